@@ -1,0 +1,58 @@
+# Makes one static library per row of layers.txt, linking exactly that row, and one test program per module.
+# A module is its folder: src/<module>/*.cpp, headers in include/puppetri/<module>/, tests in tests/<module>/*_test.cpp.
+
+function(puppetri_flags target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
+        $<$<BOOL:${PUPPETRI_WERROR}>:-Werror>)
+endfunction()
+
+# Modules whose third-party parsers may throw; everything else is built without exceptions and RTTI.
+set(PUPPETRI_MAY_THROW lang io render)
+
+file(STRINGS "${CMAKE_CURRENT_SOURCE_DIR}/layers.txt" rows REGEX "^[a-z]+:")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/layers.txt")
+set(PUPPETRI_MODULES "")
+foreach(row IN LISTS rows)
+    string(REGEX MATCH "^[a-z]+" module "${row}")
+    string(REGEX REPLACE "^[a-z]+: *" "" deps "${row}")
+    string(REPLACE " " ";" deps "${deps}")
+    list(APPEND PUPPETRI_MODULES ${module})
+    file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/${module}/*.cpp")
+    if(sources)
+        add_library(puppetri_${module} STATIC ${sources})
+        target_include_directories(puppetri_${module} PUBLIC "${CMAKE_CURRENT_SOURCE_DIR}/include")
+        set(scope PUBLIC)
+        puppetri_flags(puppetri_${module})
+        if(NOT module IN_LIST PUPPETRI_MAY_THROW)
+            target_compile_options(puppetri_${module} PRIVATE -fno-exceptions -fno-rtti)
+        endif()
+    else()
+        add_library(puppetri_${module} INTERFACE)
+        target_include_directories(puppetri_${module} INTERFACE "${CMAKE_CURRENT_SOURCE_DIR}/include")
+        set(scope INTERFACE)
+    endif()
+    foreach(dep IN LISTS deps)
+        target_link_libraries(puppetri_${module} ${scope} puppetri_${dep})
+    endforeach()
+    add_library(puppetri::module_${module} ALIAS puppetri_${module})
+    if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/src/${module}/module.cmake")
+        include("${CMAKE_CURRENT_SOURCE_DIR}/src/${module}/module.cmake") # third-party libraries of this module
+    endif()
+endforeach()
+
+function(puppetri_tests module)
+    file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/tests/${module}/*_test.cpp")
+    if(NOT sources)
+        return()
+    endif()
+    add_executable(test_${module} ${sources} "${CMAKE_CURRENT_SOURCE_DIR}/tests/main.cpp")
+    target_link_libraries(test_${module} PRIVATE puppetri_${module})
+    target_include_directories(test_${module} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests")
+    puppetri_flags(test_${module})
+    target_compile_definitions(test_${module} PRIVATE PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+    add_test(NAME ${module} COMMAND test_${module} WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}")
+    if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/tests/${module}/module.cmake")
+        include("${CMAKE_CURRENT_SOURCE_DIR}/tests/${module}/module.cmake") # more tests or libraries of this module
+    endif()
+endfunction()

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// A movement that has been prepared: it knows how long it takes, where it begins and ends, what happens inside, and
+// answers its controls at any time. Preparing is what the factories of the movement library do (movement_library.h);
+// what is here is the result, immutable, asked in any order, from any thread.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "puppetri/base/time.h"
+#include "puppetri/motion/controls.h"
+
+namespace puppetri::motion {
+
+enum class Phase : std::uint8_t { kFree, kSupport, kSwing };
+
+// The limb is in `phase` during [begin, end) after the movement's start. Gaps mean free.
+struct PhaseSpan {
+    Limb limb = Limb::kPelvis;
+    Phase phase = Phase::kFree;
+    SimTime begin, end;
+};
+
+// Something that happens at an instant inside a movement: "foot_strike", "foot_off", "release", "catch". It becomes an
+// occurrence of the event NAME of the place that runs the movement and a marker in exported files.
+struct MovementEvent {
+    SimTime after_start;
+    std::string name;
+    Limb limb = Limb::kPelvis;
+};
+
+class Movement {
+   public:
+    virtual ~Movement() = default;
+
+    LimbSet limbs;                      // what sample writes
+    SimTime duration;                   // what `takes auto` gets; a whole millisecond, rounded up
+    std::vector<PhaseSpan> phases;      // ordered by limb, then begin
+    std::vector<MovementEvent> events;  // ordered by time
+
+    // Writes the controls of `limbs`, and nothing else, at t seconds after the start. Beyond the duration a movement
+    // goes on as a living rest (a standing figure keeps breathing, a carrying hand keeps carrying), since the next may
+    // be late. Needs t >= 0. Cost: no allocation.
+    virtual void sample(double t_s, Controls& out) const = 0;
+};
+
+// Stateful values never change after preparing, so that sharing is safe.
+using MovementPtr = std::shared_ptr<const Movement>;
+
+}  // namespace puppetri::motion
