@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A performance: the pose of every actor and the place of every prop at any time. What exporters and pictures read.
-// It is finished when a run is: nothing in it changes while it is asked, and times may be asked in any order.
+// A performance: the pose of every actor and the place of every prop at any time. What exporters
+// and pictures read. It is finished when a run is: nothing in it changes while it is asked, and
+// times may be asked in any order.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,19 +14,20 @@
 #include "puppetri/base/time.h"
 #include "puppetri/figure/mesh.h"
 #include "puppetri/figure/skeleton.h"
+#include "puppetri/motion/bound_call.h"
 #include "puppetri/motion/movement.h"
 
 namespace puppetri::stage {
 
-using ActorIndex = Index<struct ActorTag>;
-using PropIndex = Index<struct PropTag>;
+using motion::ActorIndex;  // into actors()
+using motion::PropIndex;   // into props()
 
-// Which movement, when: a row of the score file. The movement ends at `end`; the token leaves the place at `left`
-// (SimTime::never() when the run stopped before).
+// Which movement, when: a row of the score file. The movement ends at `end`; the token leaves the
+// place at `left` (SimTime::never() when the run stopped before).
 struct ScoreEntry {
     SimTime start, end, left;
-    std::string place;     // full path, "a.with_ball.P4"
-    std::string actor;     // of the cast, "ana"; empty for a prop's own movement
+    std::string place;  // full path, "a.with_ball.P4"
+    std::string actor;  // of the cast, "ana"; empty for a prop's own movement
     motion::LimbSet limbs;
     std::string movement;  // "step"
     std::string prop;      // "ball", or empty
@@ -53,7 +55,7 @@ struct PropView {
 };
 
 class Performance {
-   public:
+ public:
     virtual ~Performance() = default;
 
     virtual SimTime duration() const = 0;
@@ -62,8 +64,8 @@ class Performance {
     virtual std::span<const ScoreEntry> score() const = 0;
     virtual std::span<const StageEvent> events() const = 0;
 
-    // Writes the actor's pose at `at`; `out` is resized once and then reused without allocation. Safe from several
-    // threads with different `out`.
+    // Writes the actor's pose at `at`; `out` is resized once and then reused without allocation.
+    // Safe from several threads with different `out`.
     virtual void pose(ActorIndex actor, SimTime at, figure::Pose& out) const = 0;
     virtual Transform world_from_prop(PropIndex prop, SimTime at) const = 0;
     // Who holds the prop: "ana.hands", "air", "floor".

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// The stage: where the net's actions become movements. While a run goes on it prepares each
+// movement at the instant its token arrives, knows who is in charge of every limb and who holds
+// every prop, and answers how long things take. Afterwards it gives the score and the performance.
+// It never sees a marking.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "puppetri/base/diagnostic.h"
+#include "puppetri/motion/bound_call.h"
+#include "puppetri/net/host.h"
+#include "puppetri/stage/cast.h"
+#include "puppetri/stage/performance.h"
+
+namespace puppetri::stage {
+
+// An event of the place that the movement may raise: name as in Movement::events ("foot_strike",
+// "release").
+struct RaisedName {
+    std::string name;
+    net::EventIndex event;
+};
+
+// What a place does. Its number in Play::actions is its net::ActionIndex.
+struct Action {
+    motion::BoundCall call;
+    std::string place;               // full path, "a.with_ball.P4"
+    std::string instance;            // path of the net instance, "a.with_ball"; empty at the top
+    std::vector<RaisedName> raises;  // the events that the net listens to
+    SourceSpan where;                // of the call, for diagnostics
+};
+
+// Everything the stage needs before the run.
+struct Play {
+    Cast cast;
+    std::vector<Action> actions;
+};
+
+class Stage final : public net::MovementHost {
+ public:
+    // Needs check(play.cast) without errors, and calls that fit their signatures.
+    explicit Stage(Play play);
+    ~Stage() override;
+    Stage(Stage&&) noexcept;
+    Stage& operator=(Stage&&) noexcept;
+
+    SimTime begin(net::ActionIndex action, net::ActivityIndex activity, SimTime at,
+                  SimTime duration, std::span<const std::int64_t> attributes) override;
+    std::span<const net::RaisedEvent> raised(net::ActivityIndex activity) override;
+    void cut(net::ActivityIndex activity, SimTime at) override;
+    void left(net::ActivityIndex activity, SimTime at) override;
+
+    // Rows in order of start, then of arrival. May be asked while the run goes on.
+    std::span<const ScoreEntry> score() const;
+
+    // What went wrong or deserves a word so far: why begin answered negative, flights above 9 m/s
+    // or 6 m, limbs driven by two movements at once.
+    const Diagnostics& diagnostics() const;
+
+    // Ends the take at `end` (at least the last call's time) and hands over everything; the stage
+    // is empty afterwards.
+    std::unique_ptr<const Performance> finish(SimTime end);
+
+ private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace puppetri::stage
