@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// The table of commands: what is not named here does not exist.
+#include "commands.h"
+
+namespace puppetri::cli {
+
+std::vector<Command> all_commands() {
+    return {
+        new_command(),
+    };
+}
+
+}  // namespace puppetri::cli

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// The commands, one per file of the same name. A new one is declared here and named in the table of commands.cpp.
+#pragma once
+#include <vector>
+
+#include "command.h"
+
+namespace puppetri::cli {
+
+Command new_command();
+
+// In the order of the help.
+std::vector<Command> all_commands();
+
+}  // namespace puppetri::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "interrupt.h"
+
+#include <csignal>
+#include <cstdlib>
+
+namespace puppetri::cli {
+namespace {
+
+volatile std::sig_atomic_t asked = 0;
+
+extern "C" void on_interrupt(int signal) {
+    if (asked != 0) {
+        std::_Exit(128 + signal);
+    }
+    asked = 1;
+}
+
+}  // namespace
+
+void catch_interrupts() {
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+#ifdef SIGPIPE
+    std::signal(SIGPIPE, SIG_IGN);
+#endif
+}
+
+bool interrupted() { return asked != 0; }
+
+}  // namespace puppetri::cli
