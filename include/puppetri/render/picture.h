@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Pictures of a performance: the figures and props under a sun and a sky, on a floor or a road, ray traced with Embree.
+// A PictureMaker belongs to one thread; several may look at one performance.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "puppetri/base/time.h"
+#include "puppetri/render/camera.h"
+#include "puppetri/stage/cast.h"
+#include "puppetri/stage/performance.h"
+
+namespace puppetri::render {
+
+// Eight-bit sRGB, rows from the top, three bytes per pixel.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgb;
+};
+
+struct Look {
+    Vec3 to_sun_world{-0.45, 0.75, 0.5};  // any length above 0
+    int edge_samples = 6;                 // primary rays per pixel where the first ones disagree; 1 turns it off
+};
+
+// All that a picture needs beside the time. What it points to must outlive the PictureMaker.
+struct RenderScene {
+    const stage::Performance* performance = nullptr;
+    std::span<const stage::Set> sets;  // the first one is drawn; none: an endless floor
+    const CameraPath* camera = nullptr;
+    Look look;
+};
+
+class PictureMaker {
+ public:
+    // Needs performance and camera, 16 <= width, height <= 8192.
+    PictureMaker(const RenderScene& scene, int width, int height);
+    ~PictureMaker();
+    PictureMaker(PictureMaker&&) noexcept;
+    PictureMaker& operator=(PictureMaker&&) noexcept;
+
+    // The picture of one instant. The same instant gives the same bytes, whatever was asked before.
+    // Gives   `out` resized once and then reused.
+    // Cost    about 0.1 s for 1280x720 with two mannequins on one core.
+    void draw(SimTime at, Picture& out);
+
+ private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace puppetri::render
