@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: MIT
+// The syntax tree of the scene language (docs/language.md): what a .pup file says, statement by
+// statement, with nothing looked up and nothing computed. Plain values; every node carries the
+// stretch of text it came from. Statements are kept by kind, each kind in source order (names never
+// depend on the order of declarations, SEMANTICS.md section 4); what matters in source order (arcs,
+// assignments, events at one time) is one list.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "puppetri/base/diagnostic.h"
+#include "puppetri/base/rational.h"
+
+namespace puppetri::lang {
+
+// A stretch of a file's bytes, [begin, end). `file` is the number that parse() was given.
+struct Span {
+    std::uint32_t begin = 0, end = 0, file = 0;
+    bool operator==(const Span&) const = default;
+};
+
+struct Expr;
+
+// One name, as declared or as a step of a path. `fork[i + 1]` has an index; quoted names ('left
+// leg') are unquoted here.
+struct Name {
+    std::string text;
+    std::vector<Expr> index;  // usually empty
+    Span span;
+};
+
+// a.me.left_leg.swing
+struct Path {
+    std::vector<Name> steps;
+    Span span;
+    bool empty() const { return steps.empty(); }
+};
+
+enum class ExprKind : std::uint8_t {
+    kNone,         // not written
+    kNumber,       // 0.4 s: number, unit
+    kBool,         // yes no true false: number 1 or 0
+    kString,       // "text": text
+    kPath,         // a.b.c: path
+    kCall,         // a.b(x, to: y): path, args
+    kList,         // [x, y]: args, perhaps a unit for all
+    kTuple,        // (x, y, z) m: args, perhaps a unit for all; always 2 or more
+    kUnary,        // op, args[0]
+    kBinary,       // op, args[0], args[1], ...: + * and or take two or more, all others two
+    kConditional,  // args[0] ? args[1] : args[2]
+    kRange,        // args[0] .. args[1]; in `0.4 .. 0.6 s` both have the unit
+    kCount,        // #P: path
+    kCountReady,   // #ready P: path
+    kSymbol,       // only among the values of a block's property: `->`, `:`, `=`, `:=` in text
+};
+
+enum class Op : std::uint8_t {
+    kNone,
+    kNegate,
+    kPlus,
+    kNot,  // unary
+    kAdd,
+    kSubtract,
+    kMultiply,
+    kDivide,
+    kDiv,
+    kMod,
+    kPower,  // arithmetic; div and mod are those of whole numbers
+    kEqual,
+    kNotEqual,
+    kLess,
+    kLessEqual,
+    kGreater,
+    kGreaterEqual,
+    kAnd,
+    kOr,
+    kImplies,
+    kUntil,
+    kWeakUntil,
+    kRelease,  // in ltl and ctl rules only
+};
+
+struct Argument;
+
+struct Expr {
+    ExprKind kind = ExprKind::kNone;
+    Op op = Op::kNone;
+    Rational number{};  // exactly as written, before the unit
+    std::string unit;   // as written without spaces, "m/s^2", one that units.h knows; empty: none
+    std::string text;
+    Path path;
+    std::vector<Argument> args;
+    Span span;
+    Span unit_span;  // where there is a unit
+    explicit operator bool() const { return kind != ExprKind::kNone; }
+};
+
+// `value` or `name: value`.
+struct Argument {
+    Name name;  // text empty when the argument is positional
+    Expr value;
+};
+
+// name = value, in patterns, attributes and assignments (`name := value`).
+struct Binding {
+    Path name;
+    Expr value;
+    Span span;
+};
+
+// name: type = default
+struct Parameter {
+    Name name;
+    Expr type;           // kPath, or kRange for a bounded integer; kNone when not written
+    Expr default_value;  // kNone when it must be given
+    Span span;
+};
+
+// `"what people read"`; empty when not written.
+struct Caption {
+    std::string text;
+    Span span;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Nets
+
+enum class DurationKind : std::uint8_t { kDefault, kValue, kAuto, kOpen, kAs };
+
+// takes ...
+struct Duration {
+    DurationKind kind = DurationKind::kDefault;
+    Expr value;  // kValue: an expression, a kRange (drawn uniformly), or a kCall of a distribution
+    Path as;     // kAs
+    Span span;
+};
+
+// One group of `tokens 2 (kind = vip) ready, 1`.
+struct InitialTokens {
+    Expr count;
+    std::vector<Binding> attributes;
+    bool ready = false;
+    Span span;
+};
+
+enum class Discipline : std::uint8_t { kDefault, kOldest, kNewest, kLeast, kMost, kAny };
+enum class Role : std::uint8_t {
+    kInner,
+    kStart,
+    kFinish
+};  // the ways in and out of a net that a place `runs`
+
+// [public] [start | finish] place NAME "caption" clauses
+struct Place {
+    Name name;
+    Caption caption;
+    bool is_public = false;
+    Role role = Role::kInner;
+    Expr does;  // `does CALL`: a movement
+    Expr runs;  // `runs NET(args)`: the net that refines this place
+    Duration takes;
+    std::vector<InitialTokens> tokens;
+    Expr capacity;  // holds at most k
+    bool keeps_order = false;
+    Discipline discipline = Discipline::kDefault;
+    Expr discipline_key;                // least, most
+    Path of_type;                       // of Customer
+    std::vector<Parameter> attributes;  // of Customer(kind: Kind, due: time): declared here
+    Path same_as;                       // `is other.flight`: this very place, under another name
+    Span span;
+};
+
+enum class ArcKind : std::uint8_t {
+    kTake,         // k*P
+    kTakeNow,      // now k*P: ready or not
+    kTakeAll,      // all P
+    kGive,         // k*P after ->
+    kWith,         // with k*P: reads ready tokens
+    kWhile,        // while k*P: reads tokens ready or not
+    kUnless,       // unless k*P: fewer than k, ready or not
+    kUnlessReady,  // unless ready k*P
+};
+
+struct Arc {
+    ArcKind kind = ArcKind::kTake;
+    Expr weight;  // kNone: 1
+    Path place;
+    std::vector<Binding> pattern;  // queue(kind = vip, due = d); on kGive: the attributes of the
+                                   // new token. In a `now` arc `left = r` binds the time left; on
+                                   // kGive it gives the new token that duration.
+    Span span;
+};
+
+enum class Memory : std::uint8_t { kDefault, kEnabling, kAge, kResample };
+
+// NAME "caption": INPUTS -> OUTPUTS clauses
+struct Transition {
+    Name name;
+    Caption caption;
+    bool is_public = false;
+    std::vector<Arc> inputs;   // before the arrow, in source order
+    std::vector<Arc> outputs;  // after it
+    std::vector<Arc> tests;    // with, while, unless, in source order
+    Expr priority;
+    Expr guard;                // when
+    std::vector<Path> events;  // on A or B
+    Expr delay;                // after: an expression, a kRange or a kCall of a distribution
+    Memory memory = Memory::kDefault;
+    Expr servers;                      // a number, or the kPath `infinite`
+    Expr holding;                      // for d
+    bool holding_left = false;         // for left: what the token taken `now` had still to wait
+    std::vector<Binding> assignments;  // set x := ..., y := ...
+    Expr odds;
+    std::vector<Path> raises;
+    std::vector<Path> together_with;  // a rendezvous with other transitions
+    Span span;
+};
+
+// [public] state NAME "caption" = formula over places, data, phases
+struct State {
+    Name name;
+    Caption caption;
+    bool is_public = false;
+    Expr formula;
+    Span span;
+};
+
+// [public] data NAME "caption": TYPE = initial value
+struct Data {
+    Name name;
+    Caption caption;
+    bool is_public = false;
+    Expr type;     // kRange: bounded integer; kPath: bool, real, time, int, an enumeration
+    Expr initial;  // kNone: the first value, zero, no
+    Span span;
+};
+
+// enum NAME { a, b, c }
+struct Enumeration {
+    Name name;
+    std::vector<Name> values;
+    Span span;
+};
+
+// token NAME(kind: Kind, due: time)
+struct TokenType {
+    Name name;
+    std::vector<Parameter> attributes;
+    Span span;
+};
+
+// [public] [consumed] event NAME "caption" at 2 s, 3.5 s | every 2 s [from 1 s] [until 30 s]
+struct Event {
+    Name name;
+    Caption caption;
+    bool is_public = false;
+    bool is_consumed = false;
+    std::vector<Expr> at;
+    Expr every, from, until;
+    Span span;
+};
+
+// events from "file"
+struct EventFile {
+    std::string path;
+    Span span;
+};
+
+// use NET(args) as NAME
+struct Use {
+    Name name;  // `as NAME`, else the net's own name
+    Path net;
+    std::vector<Argument> args;
+    Span span;
+};
+
+// end { formula }: markings in which the net may rest for ever. Several lines: any of them.
+struct End {
+    std::vector<Expr> formulas;
+    Span span;
+};
+
+enum class RuleKind : std::uint8_t {
+    kNever,
+    kAlways,
+    kPossible,  // one operand
+    kMutex,
+    kExactlyOne,    // two or more
+    kAlternate,     // two or more firings, in turn
+    kBounded,       // operands: places, none for all of them; bound: `by: k`
+    kOnlyIf,        // A only if B
+    kAfterNoUntil,  // after A no B until C
+    kLeadsTo,       // A leads to B [within T]
+    kTakesAtMost,   // A takes at most T
+    kDeadlockFree,
+    kReversible,
+    kEnds,  // no operand
+    kLive,
+    kQuasiLive,      // transitions, none for all of them
+    kNobodyFreezes,  // actors, none for all of them
+    kCtl,
+    kLtl,  // one formula with calls AG EF AX ... or G F X, and until
+};
+
+// rule NAME "caption" ... [when settled]
+struct Rule {
+    Name name;
+    Caption caption;
+    RuleKind kind = RuleKind::kNever;
+    std::vector<Expr> operands;  // in the order of the form
+    Expr bound;                  // the time of within / at most, the k of bounded
+    bool when_settled = false;   // looked at only where time passes
+    Span span;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Blocks: every other kind, parsed alike and given meaning by whoever knows the kind
+
+// keeps ana and rui in view: one name, then values side by side: `ana and rui`, `in`, `view`.
+struct Property {
+    Path name;
+    std::vector<Expr> values;
+    std::vector<Property> children;  // nested { ... }
+    bool has_children = false;       // also when they are empty
+    Span span;
+};
+
+// camera main { ... }, material wood(shine = 0.2) { ... }
+struct Block {
+    Name kind;
+    Name name;  // text empty when not written
+    std::vector<Parameter> parameters;
+    std::vector<Property> properties;
+    Span span;
+};
+
+// ana: mannequin { height 1.75 m, at (-1.5, 0, 0) m }
+struct CastMember {
+    Name name;
+    Name kind;
+    std::vector<Property> properties;
+    Span span;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Files
+
+struct For;
+struct Net;
+
+// The statements of a file, of a net, or of a `for`. What may not stand there has been refused by
+// the parser: nets, cast and blocks of other kinds stand in files only. Places and transitions of a
+// file are the scene's own net.
+struct Body {
+    std::vector<Place> places;
+    std::vector<Transition> transitions;
+    std::vector<State> states;
+    std::vector<Data> data;
+    std::vector<Enumeration> enumerations;
+    std::vector<TokenType> token_types;
+    std::vector<Event> events;
+    std::vector<EventFile> event_files;
+    std::vector<Use> uses;
+    std::vector<Rule> rules;
+    std::vector<End> ends;
+    std::vector<For> loops;
+    std::vector<Net> nets;
+    std::vector<CastMember> cast;
+    std::vector<Block> blocks;
+};
+
+// for p in (a, b) { ... }, for i in 1 .. n { ... }. A rule named `fair` in it is named `fair.a`.
+struct For {
+    Name variable;
+    Expr domain;
+    Body body;
+    Span span;
+};
+
+// net NAME(parameters) { ... }
+struct Net {
+    Name name;
+    Caption caption;
+    std::vector<Parameter> parameters;
+    Body body;
+    Span span;
+};
+
+// import walk, run from "gaits.pup"
+struct Import {
+    std::vector<Name> names;
+    std::string path;
+    Span path_span;
+    Span span;
+};
+
+enum class HorizonKind : std::uint8_t { kNone, kTime, kFrame, kFirings };
+
+// The header lines; kNone where not written.
+struct Header {
+    Expr language;
+    Caption title;    // scene "title"
+    Span scene_span;  // the scene line; begin == end when there is none: the file is a library of
+                      // nets
+    Expr frames_per_second;
+    HorizonKind horizon_kind = HorizonKind::kNone;
+    Expr horizon;  // until frame 960 | until 40 s | until 500 firings
+    Expr seed;
+    Expr pace;       // one firing per beat of an untimed net
+    Expr time_unit;  // of numbers without unit where a time is wanted
+};
+
+struct File {
+    std::string filename;
+    std::string text;                        // as read, without a leading byte order mark
+    std::vector<std::uint32_t> line_starts;  // byte offsets, the first is 0
+    Header header;
+    std::vector<Import> imports;
+    Body body;
+
+    // Line, column and length for people, all in code points; a span over several lines ends with
+    // its first. Cost: log n.
+    SourceSpan where(Span span) const;
+    // The line's text without its end, for format_diagnostic. Empty for lines that are not there.
+    std::string line_text(std::uint32_t line) const;
+};
+
+// "a.me.left_leg", indices written out.
+std::string to_text(const Path& path);
+
+// As fmt would write it; for messages.
+std::string to_text(const Expr& expr);
+
+}  // namespace puppetri::lang
