@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// The compiled net: immutable, flat, shared by simulator and prover. Places and transitions keep
+// the indices that they have in the draft as far as nothing was fused, lowered or merged;
+// `place_of_draft` says where each went. What a firing touches lies in rows (CSR) of 8-byte
+// entries; names, captions and source positions lie apart.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "puppetri/base/diagnostic.h"
+#include "puppetri/base/expr.h"
+#include "puppetri/net/draft.h"
+
+namespace puppetri::net {
+
+// Rows of one flat array: row i is items[starts[i] .. starts[i + 1]).
+template <class T>
+struct Rows {
+    std::vector<std::uint32_t> starts = {0};
+    std::vector<T> items;
+
+    std::span<const T> row(std::uint32_t i) const {
+        return {items.data() + starts[i], items.data() + starts[i + 1]};
+    }
+    std::uint32_t size() const { return static_cast<std::uint32_t>(starts.size()) - 1; }
+    bool operator==(const Rows&) const = default;
+};
+
+// `weight` tokens of a place.
+struct Weighted {
+    std::uint32_t place = 0;
+    std::uint32_t weight = 1;
+    bool operator==(const Weighted&) const = default;
+};
+
+// A transition that waits for a count: at least `threshold`, or (inhibits) fewer.
+struct Watcher {
+    std::uint32_t transition = 0;  // the uppermost bit: inhibits
+    std::uint32_t threshold = 1;
+    static constexpr std::uint32_t kInhibits = 1u << 31;
+    bool operator==(const Watcher&) const = default;
+};
+
+// How a place keeps its tokens.
+enum class PlaceKind : std::uint8_t {
+    kCount,  // all ready at once: one number
+    kTimed,  // a number of tokens, a number of ready ones, and the ready times in the queue
+    kRich,   // records with serial, arrival, ready time, attributes, activity
+};
+
+// Names, captions, source positions: looked at by people only.
+struct ElementInfo {
+    std::string path;
+    std::string caption;
+    SourceSpan where;
+    bool operator==(const ElementInfo&) const = default;
+};
+
+struct NetTables;  // the inner tables of the engine, net/tables.h
+
+class Net {
+ public:
+    Net();
+    ~Net();
+    Net(const Net&);
+    Net(Net&&) noexcept;
+    Net& operator=(const Net&);
+    Net& operator=(Net&&) noexcept;
+
+    std::uint32_t place_count() const;
+    std::uint32_t transition_count() const;
+    std::uint32_t datum_count() const;
+    std::uint32_t event_count() const;
+
+    const ElementInfo& place(PlaceIndex p) const;
+    const ElementInfo& transition(TransitionIndex t) const;
+    const ElementInfo& datum(DatumIndex d) const;
+    const ElementInfo& event(EventIndex e) const;
+
+    // By full path, also the old names of fused places. Invalid when there is none.
+    PlaceIndex find_place(std::string_view path) const;
+    TransitionIndex find_transition(std::string_view path) const;
+    DatumIndex find_datum(std::string_view path) const;
+    EventIndex find_event(std::string_view path) const;
+
+    // Where a place or transition of the draft went (of a lowered `for d`: t.begin).
+    PlaceIndex place_of_draft(PlaceIndex p) const;
+    TransitionIndex transition_of_draft(TransitionIndex t) const;
+
+    ActionIndex action(PlaceIndex p) const;  // invalid: none
+    // No duration, delay, holding or schedule anywhere: one firing per beat.
+    bool paced() const;
+    // The checked draft after lowering, fusion and rendezvous: what the tables were made from. For
+    // provers and drawings.
+    const NetDraft& lowered() const;
+    // Of the whole net, names and all: equal nets have equal hashes.
+    std::uint64_t hash() const;
+    // What a run touches per place and per arc, without names, captions and source positions.
+    std::size_t hot_bytes() const;
+    // Rounding to ticks and the like: not an error.
+    const Diagnostics& notes() const;
+
+    const NetTables& tables() const { return *tables_; }
+
+ private:
+    friend Checked<Net> compile(const NetDraft& draft);
+    NetTables* tables_;
+};
+
+// Rewrites `for d`, refinements, fusions and rendezvous into plain places, transitions and arcs.
+// Fails  with all defects of these.
+Checked<NetDraft> lower(const NetDraft& draft);
+
+// Lowers, checks everything, lays out.
+// Fails  with all defects, by code: unknown-index duplicate-name weight-not-positive
+// odds-not-positive
+//        source-without-delay two-writers as-without-sibling fused-disagree rendezvous-disagree
+//        type-mismatch variable-unbound pattern-on-attribute sensor-assigned range-empty
+//        initial-out-of-range negative-duration empty-interval capacity-exceeded refined-not-open
+//        key-missing action-needs-host module-cycle net-too-large
+// Cost   O(size).
+Checked<Net> compile(const NetDraft& draft);
+
+}  // namespace puppetri::net
