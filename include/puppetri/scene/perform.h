@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Performing a scene: the player runs its net, the stage prepares its movements, and out come a log, a score and a
+// performance. What the commands run, export and render and the benchmarks share.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "puppetri/run/player.h"
+#include "puppetri/scene/scene.h"
+
+namespace puppetri::scene {
+
+struct PerformOptions {
+    std::optional<std::uint64_t> seed;          // instead of the scene's
+    Horizon horizon;                            // instead of the scene's, where given
+    std::vector<run::OutsideEvent> events;      // beside those that the scene schedules
+    run::LogSink* sink = nullptr;               // hears of every firing
+    bool record = false;                        // keep the outside events in Performed::recording
+    // Asked about 20 times a second of model time, with the share done; answering false ends the run cleanly.
+    bool (*go_on)(void* context, double share_done) = nullptr;
+    void* context = nullptr;
+};
+
+struct Performed {
+    std::uint64_t seed = 0;
+    run::Stop stop = run::Stop::kLimit;
+    bool interrupted = false;            // go_on said no
+    SimTime end;                         // of the take
+    std::uint64_t firings = 0;
+    std::uint64_t log_hash = 0;
+    std::optional<Diagnostic> fault;     // with kFault: why; the performance reaches to there
+    Diagnostics notes;                   // of the player and of the stage
+    std::vector<run::OutsideEvent> recording;
+    std::unique_ptr<const stage::Performance> performance;
+};
+
+// Plays from time 0 to the horizon, or until nothing can happen any more. A time that was given as horizon is the end
+// of the take even when the net rests earlier; otherwise the take ends with its last movement.
+// Fails   "no-horizon" when neither the options nor the scene give one and the net has not come to rest after an hour of
+//         model time.
+Checked<Performed> perform(const Scene& scene, const PerformOptions& options = {});
+
+}  // namespace puppetri::scene
