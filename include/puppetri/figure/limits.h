@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How far joints turn. A spherical joint is limited by an elliptic cone for where the bone points (swing) and a range
-// for its rotation about itself (twist); a hinge by a range about one axis. Limits are relative to a centre pose, since
-// the middle of a shoulder's range is not the T-pose.
+// How far joints turn. A spherical joint is limited by an elliptic cone for where the bone points
+// (swing) and a range for its rotation about itself (twist); a hinge by a range about one axis.
+// Limits are relative to a centre pose, since the middle of a shoulder's range is not the T-pose.
 #pragma once
 #include "puppetri/figure/skeleton.h"
 
@@ -12,14 +12,17 @@ enum class LimitKind : std::uint8_t { kFree, kHinge, kCone };
 struct JointLimit {
     LimitKind kind = LimitKind::kFree;
     Vec3 axis_joint{0, 1, 0};  // hinge axis, or twist axis (along the bone) of a cone; unit
-    Vec3 side_joint{1, 0, 0};  // cone: unit, orthogonal to the axis; swings about it have the range swing_side_rad
-    Quat parent_from_centre;   // the middle of the cone's swing, as a value of the joint's rotation
-    double lo_rad = 0, hi_rad = 0;       // hinge range or twist range
-    double swing_side_rad = 0;           // half angle of swings about side_joint
-    double swing_other_rad = 0;          // half angle of swings about axis x side
+    Vec3 side_joint{
+        1, 0,
+        0};  // cone: unit, orthogonal to the axis; swings about it have the range swing_side_rad
+    Quat parent_from_centre{};  // the middle of the cone's swing, as a value of the joint's rotation
+    double lo_rad = 0, hi_rad = 0;  // hinge range or twist range
+    double swing_side_rad = 0;      // half angle of swings about side_joint
+    double swing_other_rad = 0;     // half angle of swings about axis x side
 };
 
-// The nearest rotation within the limit (nearest in swing and twist separately). Inside, the rotation itself.
+// The nearest rotation within the limit (nearest in swing and twist separately). Inside, the
+// rotation itself.
 Quat clamp_to_limit(const JointLimit& limit, Quat parent_from_joint);
 
 // By how much the rotation is outside its limit; 0 inside.

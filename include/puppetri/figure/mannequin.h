@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The mannequin: a humanoid scaled by its height alone. Segment lengths are fractions of the height after Drillis and
-// Contini (1966) as printed in Winter, "Biomechanics and Motor Control of Human Movement" (4th ed. 2009), figure 4.1;
-// finger segments after Buchholz, Armstrong and Goldstein (1992). Joint ranges are those of the American Academy of
-// Orthopaedic Surgeons (1965), rounded outward to whole 5 degrees.
+// The mannequin: a humanoid scaled by its height alone. Segment lengths are fractions of the height
+// after Drillis and Contini (1966) as printed in Winter, "Biomechanics and Motor Control of Human
+// Movement" (4th ed. 2009), figure 4.1; finger segments after Buchholz, Armstrong and Goldstein
+// (1992). Joint ranges are those of the American Academy of Orthopaedic Surgeons (1965), rounded
+// outward to whole 5 degrees.
 //
-// At rest it stands in a T-pose: facing +Z, +Y up, its left arm along +X, soles on the floor, every joint's rotation the
-// identity, so that joint axes are the model's axes.
+// At rest it stands in a T-pose: facing +Z, +Y up, its left arm along +X, soles on the floor, every
+// joint's rotation the identity, so that joint axes are the model's axes.
 #pragma once
 #include <array>
 #include <span>
@@ -22,24 +23,26 @@ inline constexpr int kLeft = 0, kRight = 1;
 struct Leg {
     JointIndex hip, knee, ankle, toes;  // leftUpperLeg, leftLowerLeg, leftFoot, leftToes
     double thigh_m = 0, shank_m = 0;
-    Vec3 hip_pelvis;     // of the hip joint in the space of `hips`
-    Vec3 toes_foot;      // of the joint leftToes in the space of leftFoot
-    // Contact points of the sole. The ball lies under the joint leftToes: when the heel rises the toes stay flat and
-    // the foot turns about that joint.
+    Vec3 hip_pelvis;  // of the hip joint in the space of `hips`
+    Vec3 toes_foot;   // of the joint leftToes in the space of leftFoot
+    // Contact points of the sole. The ball lies under the joint leftToes: when the heel rises the
+    // toes stay flat and the foot turns about that joint.
     Vec3 heel_foot, ball_foot, toe_tip_foot;  // foot space, toes straight
     Vec3 ball_toes, toe_tip_toes;             // toes space
 };
 
-inline constexpr int kFingerJointCount = 15;  // thumb, index, middle, ring, little; three joints each from the palm out
+inline constexpr int kFingerJointCount =
+    15;  // thumb, index, middle, ring, little; three joints each from the palm out
 
 struct Arm {
-    JointIndex clavicle, shoulder, shoulder_twist, elbow, elbow_twist, hand;  // leftShoulder, leftUpperArm, ...
+    JointIndex clavicle, shoulder, shoulder_twist, elbow, elbow_twist,
+        hand;  // leftShoulder, leftUpperArm, ...
     std::array<JointIndex, kFingerJointCount> fingers;
     double upper_m = 0, fore_m = 0;
     Vec3 clavicle_chest;     // in the space of upperChest
     Vec3 shoulder_clavicle;  // in the space of the clavicle
-    // The palm: origin on the skin at the middle of the palm; +Y points out of the palm (at rest: down, the palms face
-    // the floor), +Z forward across the fingers (to the thumb).
+    // The palm: origin on the skin at the middle of the palm; +Y points out of the palm (at rest:
+    // down, the palms face the floor), +Z forward across the fingers (to the thumb).
     Transform hand_from_palm;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Piecewise quintic curves through keys of position, velocity and acceleration: twice continuously differentiable by
-// construction, and exact for everything up to polynomials of degree five between two keys. Gait and joins are made of
-// them.
+// Piecewise quintic curves through keys of position, velocity and acceleration: twice continuously
+// differentiable by construction, and exact for everything up to polynomials of degree five between
+// two keys. Gait and joins are made of them.
 #pragma once
 #include <array>
 #include <vector>
@@ -30,10 +30,11 @@ struct Key1 {
     Motion1 motion;
 };
 
-// Keys in strictly ascending order of time. Before the first and after the last key the curve holds its end position,
-// so that it is smooth there only when velocity and acceleration of the end keys are 0.
+// Keys in strictly ascending order of time. Before the first and after the last key the curve holds
+// its end position, so that it is smooth there only when velocity and acceleration of the end keys
+// are 0.
 class Curve1 {
-   public:
+ public:
     Curve1() = default;
     explicit Curve1(std::vector<Key1> keys);
     Motion1 at(double t_s) const;
@@ -41,13 +42,14 @@ class Curve1 {
     double begin_s() const { return keys_.empty() ? 0 : keys_.front().t_s; }
     double end_s() const { return keys_.empty() ? 0 : keys_.back().t_s; }
 
-   private:
+ private:
     std::vector<Key1> keys_;
     std::vector<Quintic> pieces_;
 };
 
-// A curve through points, with given motion at both ends, whose squared third derivative is smallest (the natural
-// "minimum jerk" interpolation; Flash and Hogan 1985): velocities and accelerations at the inner points are chosen.
+// A curve through points, with given motion at both ends, whose squared third derivative is
+// smallest (the natural "minimum jerk" interpolation; Flash and Hogan 1985): velocities and
+// accelerations at the inner points are chosen.
 struct Waypoint1 {
     double t_s = 0;
     double position = 0;
@@ -55,7 +57,7 @@ struct Waypoint1 {
 Curve1 minimum_jerk(Key1 from, const std::vector<Waypoint1>& inner, Key1 to);
 
 class Curve3 {
-   public:
+ public:
     Curve1 x, y, z;
     Motion3 at(double t_s) const;
 };

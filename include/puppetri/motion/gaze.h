@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Where a figure looks: the head turns to a point of the world as far as neck and head allow, the chest follows a little.
+// Where a figure looks: the head turns to a point of the world as far as neck and head allow, the
+// chest follows a little.
 #pragma once
 #include "puppetri/motion/context.h"
 
 namespace puppetri::motion {
 
-// The rotation chest_from_head that makes the eyes look at the target, no further than the neck turns: 70 degrees to
-// the side, 40 up and down, never past it behind the back (the head then stays at the nearer limit).
+// The rotation chest_from_head that makes the eyes look at the target, no further than the neck
+// turns: 70 degrees to the side, 40 up and down, never past it behind the back (the head then stays
+// at the nearer limit).
 Quat gaze_at(const figure::Figure& figure, const Controls& controls, Vec3 target_world);
 
-// World transform of the joint upperChest and of a hand as the controls ask for it (no limits applied); what `hold`,
-// `reach` and `throw` compute with.
+// World transform of the joint upperChest and of a hand as the controls ask for it (no limits
+// applied); what `hold`, `reach` and `throw` compute with.
 Transform world_from_chest(const figure::Figure& figure, const Controls& controls);
 Transform world_from_hand(const figure::Figure& figure, const Controls& controls, Side side);
 Transform world_from_palm(const figure::Figure& figure, const Controls& controls, Side side);

@@ -1,60 +1,63 @@
 // SPDX-License-Identifier: MIT
-// Inertialization: the new movement plays at once, and the difference to where the limb really is, and how fast, fades
-// out by a polynomial. Unlike cross-fading it never asks the old movement again.
-// Source  Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018; the quintic of
+// Inertialization: the new movement plays at once, and the difference to where the limb really is,
+// and how fast, fades out by a polynomial. Unlike cross-fading it never asks the old movement
+// again. Source  Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War",
+// GDC 2018; the quintic of
 //         that talk, with rotations as rotation vectors.
 #pragma once
 #include "puppetri/motion/context.h"
 
 namespace puppetri::motion {
 
-// An offset x0 with rate v0 that reaches 0 with rate 0 and acceleration 0 after blend_s. An offset that already shrinks
-// so fast that it would overshoot ends earlier.
+// An offset x0 with rate v0 that reaches 0 with rate 0 and acceleration 0 after blend_s. An offset
+// that already shrinks so fast that it would overshoot ends earlier.
 class InertialOffset {
-   public:
+ public:
     InertialOffset() = default;
     InertialOffset(double x0, double v0, double blend_s);
     double at(double t_s) const;
 
-   private:
+ private:
     double x0_ = 0, v0_ = 0, a0_ = 0, a_ = 0, b_ = 0, c_ = 0, end_s_ = 0;
 };
 
 // Of a vector: along the direction of the offset, after Bollo; the rate across it fades by itself.
 class InertialOffset3 {
-   public:
+ public:
     InertialOffset3() = default;
     InertialOffset3(Vec3 x0, Vec3 v0, double blend_s);
     Vec3 at(double t_s) const;
 
-   private:
+ private:
     InertialOffset x_, y_, z_;
 };
 
-// Make one at a movement's start from the state of the context and the movement's own controls and rate at 0; apply it
-// to what the movement samples later. With it, the controls are continuous in value and rate.
+// Make one at a movement's start from the state of the context and the movement's own controls and
+// rate at 0; apply it to what the movement samples later. With it, the controls are continuous in
+// value and rate.
 class InertialBody {
-   public:
+ public:
     InertialBody() = default;
-    InertialBody(const BodyControl& now, const ControlsRate& rate, const BodyControl& own, const ControlsRate& own_rate,
-                 double blend_s);
+    InertialBody(const BodyControl& now, const ControlsRate& rate, const BodyControl& own,
+                 const ControlsRate& own_rate, double blend_s);
     void apply(double t_s, BodyControl& body) const;
 
-   private:
+ private:
     InertialOffset3 chest_, head_;
     InertialOffset breath_;
 };
 
-// Only the part in chest space, fingers and swivel; a hand that is fixed to the world (world_weight) is the business of
-// the movement that fixes it, except that the weight itself and its world offset fade.
+// Only the part in chest space, fingers and swivel; a hand that is fixed to the world
+// (world_weight) is the business of the movement that fixes it, except that the weight itself and
+// its world offset fade.
 class InertialArm {
-   public:
+ public:
     InertialArm() = default;
     InertialArm(const ArmControl& now, const ControlsRate::Arm& rate, const ArmControl& own,
                 const ControlsRate::Arm& own_rate, double blend_s);
     void apply(double t_s, ArmControl& arm) const;
 
-   private:
+ private:
     InertialOffset3 position_, rotation_, world_position_, world_rotation_;
     InertialOffset swivel_, relaxed_, spread_, grip_, world_weight_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From controls to a pose: the one place where handles become joint rotations. Pelvis first, then trunk and head, then
-// each limb by analytic inverse kinematics; rotations about a limb's own axis are spread over its twist bones; all joints
-// end inside their limits.
+// From controls to a pose: the one place where handles become joint rotations. Pelvis first, then
+// trunk and head, then each limb by analytic inverse kinematics; rotations about a limb's own axis
+// are spread over its twist bones; all joints end inside their limits.
 #pragma once
 #include <array>
 
@@ -16,9 +16,11 @@ struct SolveOutcome {
     double clamped_rad = 0;  // largest angle by which a joint had to be turned back into its limits
 };
 
-// Gives   a pose whose feet and hands are where the controls say, as far as bones and limits allow; the feet keep their
+// Gives   a pose whose feet and hands are where the controls say, as far as bones and limits allow;
+// the feet keep their
 //         rotation in the world.
 // Cost    a few microseconds; `out` is resized once, then nothing is allocated.
-SolveOutcome solve_controls(const figure::Figure& figure, const Controls& controls, figure::Pose& out);
+SolveOutcome solve_controls(const figure::Figure& figure, const Controls& controls,
+                            figure::Pose& out);
 
 }  // namespace puppetri::motion
