@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+// The table of movements. One row per name and kind of subject, ordered by name, then subject;
+// `prepare.cpp` has the function behind each row.
+#include <algorithm>
+#include <array>
+
+#include "puppetri/motion/library.h"
+
+namespace puppetri::motion {
+namespace {
+
+using enum ParameterType;
+
+constexpr SimTime milliseconds(std::int64_t ms) { return {ms * kTicksPerMillisecond}; }
+constexpr LimbSet limb_set(std::initializer_list<Limb> limbs) {
+    LimbSet set;
+    for (Limb limb : limbs) {
+        set = set.with(limb);
+    }
+    return set;
+}
+constexpr TypeSet types(std::initializer_list<ParameterType> list) {
+    TypeSet set;
+    for (ParameterType type : list) {
+        set = set.with(type);
+    }
+    return set;
+}
+
+constexpr LimbSet kLegs = limb_set({Limb::kLeftLeg, Limb::kRightLeg});
+constexpr LimbSet kArms = limb_set({Limb::kLeftArm, Limb::kRightArm});
+constexpr LimbSet kWhole = limb_set(
+    {Limb::kPelvis, Limb::kBody, Limb::kLeftLeg, Limb::kRightLeg, Limb::kLeftArm, Limb::kRightArm});
+constexpr LimbSet kUpper = limb_set({Limb::kPelvis, Limb::kBody, Limb::kLeftArm, Limb::kRightArm});
+
+constexpr Parameter kArmsParameter{.name = "arms",
+                                   .types = types({kMovement}),
+                                   .optional = true,
+                                   .doc = "leaves both arms to this movement"};
+constexpr Parameter kBallParameter{
+    .name = "ball", .types = types({kProp}), .doc = "what both hands hold"};
+constexpr Parameter kStrokeParameter{.name = "stroke",
+                                     .types = types({kLength}),
+                                     .default_text = "0.6 m",
+                                     .doc = "the way of the body; the foot swings twice as far"};
+constexpr Parameter kHalfStrokeParameter{.name = "stroke",
+                                         .types = types({kLength}),
+                                         .default_text = "0.3 m",
+                                         .doc = "the way of the body"};
+constexpr Parameter kSideParameter{
+    .name = "side", .types = types({kSide}), .doc = "the leg that swings"};
+
+constexpr Parameter kFor[] = {{.name = "lasting",
+                               .types = types({kTime}),
+                               .default_text = "2 s",
+                               .doc = "how long, where the place says `takes auto`"},
+                              kArmsParameter};
+constexpr Parameter kStep[] = {kSideParameter, kStrokeParameter, kArmsParameter};
+constexpr Parameter kHalfStep[] = {kSideParameter, kHalfStrokeParameter, kArmsParameter};
+constexpr Parameter kWalk[] = {{.name = "steps",
+                                .types = types({kInt}),
+                                .default_text = "4",
+                                .doc = "how many; the first and the last are half ones"},
+                               kStrokeParameter,
+                               {.name = "side",
+                                .types = types({kSide}),
+                                .default_text = "right",
+                                .doc = "the leg that swings first"},
+                               kArmsParameter};
+constexpr Parameter kFace[] = {
+    {.name = "toward",
+     .types = types({kActor, kProp, kSet, kPoint, kAngle}),
+     .doc = "whom or what; of a road its direction; an angle is a heading"},
+    kArmsParameter};
+constexpr Parameter kTurn[] = {{.name = "by",
+                                .types = types({kAngle}),
+                                .default_text = "90 deg",
+                                .doc = "to the left where positive"},
+                               kArmsParameter};
+constexpr Parameter kHold[] = {kBallParameter};
+constexpr Parameter kReady[] = {
+    kBallParameter,
+    {.name = "from", .types = types({kActor, kPoint}), .doc = "where it will come from"}};
+constexpr Parameter kReach[] = {
+    {.name = "to", .types = types({kProp, kPoint, kActor}), .doc = "what the hand reaches for"},
+    {.name = "side", .types = types({kSide}), .default_text = "right", .doc = "the hand"}};
+constexpr Parameter kThrow[] = {kBallParameter,
+                                {.name = "to",
+                                 .types = types({kActor, kPoint}),
+                                 .doc = "who will catch it, or where it lands"}};
+constexpr Parameter kCatch[] = {kBallParameter};
+constexpr Parameter kFly[] = {
+    {.name = "from", .types = types({kActor}), .optional = true, .doc = "who threw it"},
+    {.name = "to",
+     .types = types({kActor, kPoint}),
+     .doc = "who will catch it, or where it lands"}};
+constexpr Parameter kTransfer[] = {{.name = "stroke",
+                                    .types = types({kLength}),
+                                    .default_text = "1.2 m",
+                                    .doc = "the way of the foot"}};
+constexpr Parameter kSupport[] = {{.name = "stroke",
+                                   .types = types({kLength}),
+                                   .default_text = "0.6 m",
+                                   .doc = "the way of the body while this leg carries it"}};
+constexpr Parameter kArmSwing[] = {{.name = "angle",
+                                    .types = types({kAngle}),
+                                    .default_text = "22 deg",
+                                    .doc = "how far from hanging"}};
+
+constexpr auto kTable = std::to_array<MovementSignature>({
+    {.name = "carry",
+     .parameters = kHold,
+     .limbs = kArms,
+     .as_argument = true,
+     .shortest = milliseconds(1),
+     .longest = milliseconds(3000),
+     .doc = "carries a ball before the belly with both hands, elbows bent"},
+    {.name = "catch",
+     .parameters = kCatch,
+     .limbs = kWhole,
+     .shortest = milliseconds(400),
+     .longest = milliseconds(1500),
+     .doc = "takes a ball out of the air at the instant it begins, gives way and brings it to the "
+            "belly"},
+    {.name = "face",
+     .parameters = kFace,
+     .limbs = kWhole,
+     .arms_parameter = "arms",
+     .shortest = milliseconds(1),
+     .longest = milliseconds(3000),
+     .doc = "turns on the spot until it faces someone, something, or along a road"},
+    {.name = "fly",
+     .subject = SubjectKind::kProp,
+     .parameters = kFly,
+     .shortest = milliseconds(1),
+     .longest = milliseconds(5000),
+     .doc = "flies freely from the hands that let it go to the hands that wait"},
+    {.name = "half_step",
+     .parameters = kHalfStep,
+     .limbs = kWhole,
+     .arms_parameter = "arms",
+     .shortest = milliseconds(100),
+     .longest = milliseconds(3000),
+     .doc = "a step from standing, or into standing"},
+    {.name = "hold",
+     .parameters = kHold,
+     .limbs = kArms,
+     .as_argument = true,
+     .shortest = milliseconds(1),
+     .longest = milliseconds(3000),
+     .doc = "keeps a ball where the hands have it now"},
+    {.name = "idle",
+     .parameters = kFor,
+     .limbs = kWhole,
+     .arms_parameter = "arms",
+     .shortest = milliseconds(1),
+     .longest = milliseconds(86'400'000),
+     .doc = "stands alive: breathes, shifts its weight, looks about"},
+    {.name = "reach",
+     .parameters = kReach,
+     .limbs = kArms,
+     .as_argument = true,
+     .shortest = milliseconds(200),
+     .longest = milliseconds(2000),
+     .doc = "brings one hand to a point or a prop, as far as the arm goes"},
+    {.name = "ready",
+     .parameters = kReady,
+     .limbs = kWhole,
+     .shortest = milliseconds(300),
+     .longest = milliseconds(3000),
+     .doc = "turns to where a ball will come from, bends the knees and opens the hands"},
+    {.name = "stand",
+     .parameters = kFor,
+     .limbs = kWhole,
+     .arms_parameter = "arms",
+     .shortest = milliseconds(1),
+     .longest = milliseconds(86'400'000),
+     .doc = "the same as idle"},
+    {.name = "step",
+     .parameters = kStep,
+     .limbs = kWhole,
+     .arms_parameter = "arms",
+     .shortest = milliseconds(100),
+     .longest = milliseconds(3000),
+     .doc = "a whole step in the middle of a walk"},
+    {.name = "support",
+     .subject = SubjectKind::kLimb,
+     .on_limbs = kLegs,
+     .parameters = kSupport,
+     .limbs = limb_set({Limb::kPelvis}),
+     .shortest = milliseconds(100),
+     .longest = milliseconds(3000),
+     .doc = "stands on this leg and carries the pelvis forward over it"},
+    {.name = "swing",
+     .limbs = kArms,
+     .as_argument = true,
+     .shortest = milliseconds(1),
+     .longest = milliseconds(3000),
+     .doc = "as argument: the arms swing as the whole movement has them; alone: they hang"},
+    {.name = "swing_backward",
+     .subject = SubjectKind::kLimb,
+     .on_limbs = kArms,
+     .parameters = kArmSwing,
+     .limbs = {},
+     .shortest = milliseconds(100),
+     .longest = milliseconds(3000),
+     .doc = "swings this arm back"},
+    {.name = "swing_forward",
+     .subject = SubjectKind::kLimb,
+     .on_limbs = kArms,
+     .parameters = kArmSwing,
+     .limbs = {},
+     .shortest = milliseconds(100),
+     .longest = milliseconds(3000),
+     .doc = "swings this arm forward"},
+    {.name = "throw",
+     .parameters = kThrow,
+     .limbs = kUpper,
+     .shortest = milliseconds(500),
+     .longest = milliseconds(1500),
+     .doc =
+         "swings a held ball back and throws it underarm with both hands; ends when it is let go"},
+    {.name = "transfer",
+     .subject = SubjectKind::kLimb,
+     .on_limbs = kLegs,
+     .parameters = kTransfer,
+     .limbs = {},
+     .shortest = milliseconds(100),
+     .longest = milliseconds(3000),
+     .doc = "swings this leg through the air to its next place"},
+    {.name = "turn",
+     .parameters = kTurn,
+     .limbs = kWhole,
+     .arms_parameter = "arms",
+     .shortest = milliseconds(1),
+     .longest = milliseconds(3000),
+     .doc = "turns on the spot by an angle"},
+    {.name = "walk",
+     .parameters = kWalk,
+     .limbs = kWhole,
+     .arms_parameter = "arms",
+     .shortest = milliseconds(100),
+     .longest = milliseconds(3'600'000),
+     .doc = "walks some steps, from standing to standing"},
+});
+
+constexpr std::string_view kTypeNames[] = {"actor", "prop",  "set",  "int",  "real",  "length",
+                                           "time",  "angle", "bool", "side", "point", "movement"};
+constexpr std::string_view kLimbNames[kLimbCount] = {"pelvis",    "body",     "left_leg",
+                                                     "right_leg", "left_arm", "right_arm"};
+
+}  // namespace
+
+std::span<const MovementSignature> movement_library() { return kTable; }
+
+const MovementSignature* find_movement(std::string_view name, SubjectKind subject) {
+    const auto found = std::find_if(kTable.begin(), kTable.end(), [&](const MovementSignature& m) {
+        return m.name == name && m.subject == subject;
+    });
+    return found == kTable.end() ? nullptr : &*found;
+}
+
+std::string_view name_of(ParameterType type) { return kTypeNames[static_cast<int>(type)]; }
+
+std::optional<Limb> limb_named(std::string_view name) {
+    for (int i = 0; i < kLimbCount; ++i) {
+        if (kLimbNames[i] == name) {
+            return static_cast<Limb>(i);
+        }
+    }
+    return std::nullopt;
+}
+
+std::string_view name_of(Limb limb) { return kLimbNames[static_cast<int>(limb)]; }
+
+}  // namespace puppetri::motion
