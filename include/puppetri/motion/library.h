@@ -46,29 +46,30 @@ struct TypeSet {
 };
 
 struct Parameter {
-    std::string_view name;  // arguments may be given by position in this order, or by name
-    TypeSet types;
+    std::string_view name = {};  // arguments may be given by position in this order, or by name
+    TypeSet types = {};
     // As the scene would write it ("0.6 m", "left"); empty: the argument must be given, unless
     // `optional`.
-    std::string_view default_text;
+    std::string_view default_text = {};
     bool optional =
         false;  // may be missing without a default: the movement then chooses (arms: its own)
-    std::string_view doc;
+    std::string_view doc = {};
 };
 
 struct MovementSignature {
-    std::string_view name;
+    std::string_view name = {};
     SubjectKind subject = SubjectKind::kActor;
-    LimbSet on_limbs;  // kLimb: the limbs that can be the subject ("left_leg", "right_leg")
-    std::span<const Parameter> parameters;
-    LimbSet limbs;  // what it drives; for kLimb: beyond the subject itself (the support leg drives
-                    // the pelvis)
+    LimbSet on_limbs = {};  // kLimb: the limbs that can be the subject ("left_leg", "right_leg")
+    std::span<const Parameter> parameters = {};
+    LimbSet limbs = {};  // what it drives; for kLimb: beyond the subject itself (the support leg
+                         // drives the pelvis)
     std::string_view
         arms_parameter;  // the parameter that leaves both arms to another movement; empty: none
     bool as_argument =
         false;  // may stand as a movement argument: it drives arms alone (carry, hold, swing, ...)
-    SimTime shortest, longest;  // every `takes auto` lies between (an assumption of proofs)
-    std::string_view doc;       // one line
+    SimTime shortest = {},
+            longest = {};       // every `takes auto` lies between (an assumption of proofs)
+    std::string_view doc = {};  // one line
 };
 
 // All movements, ordered by name, then subject.
