@@ -11,8 +11,10 @@ namespace {
 
 using enum ParameterType;
 
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
 constexpr SimTime milliseconds(std::int64_t ms) { return {ms * kTicksPerMillisecond}; }
-constexpr LimbSet limb_set(std::initializer_list<Limb> limbs) {
+constexpr LimbSet limbs_of(std::initializer_list<Limb> limbs) {
     LimbSet set;
     for (Limb limb : limbs) {
         set = set.with(limb);
@@ -27,11 +29,11 @@ constexpr TypeSet types(std::initializer_list<ParameterType> list) {
     return set;
 }
 
-constexpr LimbSet kLegs = limb_set({Limb::kLeftLeg, Limb::kRightLeg});
-constexpr LimbSet kArms = limb_set({Limb::kLeftArm, Limb::kRightArm});
-constexpr LimbSet kWhole = limb_set(
+constexpr LimbSet kLegs = limbs_of({Limb::kLeftLeg, Limb::kRightLeg});
+constexpr LimbSet kArms = limbs_of({Limb::kLeftArm, Limb::kRightArm});
+constexpr LimbSet kWhole = limbs_of(
     {Limb::kPelvis, Limb::kBody, Limb::kLeftLeg, Limb::kRightLeg, Limb::kLeftArm, Limb::kRightArm});
-constexpr LimbSet kUpper = limb_set({Limb::kPelvis, Limb::kBody, Limb::kLeftArm, Limb::kRightArm});
+constexpr LimbSet kUpper = limbs_of({Limb::kPelvis, Limb::kBody, Limb::kLeftArm, Limb::kRightArm});
 
 constexpr Parameter kArmsParameter{.name = "arms",
                                    .types = types({kMovement}),
@@ -42,31 +44,44 @@ constexpr Parameter kBallParameter{
 constexpr Parameter kStrokeParameter{.name = "stroke",
                                      .types = types({kLength}),
                                      .default_text = "0.6 m",
+                                     .default_value = 0.6,
                                      .doc = "the way of the body; the foot swings twice as far"};
 constexpr Parameter kHalfStrokeParameter{.name = "stroke",
                                          .types = types({kLength}),
                                          .default_text = "0.3 m",
+                                         .default_value = 0.3,
                                          .doc = "the way of the body"};
+constexpr Parameter kDutyParameter{
+    .name = "duty",
+    .types = types({kReal}),
+    .default_text = "0.62",
+    .default_value = 0.62,
+    .doc = "the part of the time that a foot is on the ground; above 0.5 walks, below runs"};
 constexpr Parameter kSideParameter{
     .name = "side", .types = types({kSide}), .doc = "the leg that swings"};
 
 constexpr Parameter kFor[] = {{.name = "lasting",
                                .types = types({kTime}),
                                .default_text = "2 s",
+                               .default_value = 2,
                                .doc = "how long, where the place says `takes auto`"},
                               kArmsParameter};
-constexpr Parameter kStep[] = {kSideParameter, kStrokeParameter, kArmsParameter};
-constexpr Parameter kHalfStep[] = {kSideParameter, kHalfStrokeParameter, kArmsParameter};
+constexpr Parameter kStep[] = {kSideParameter, kStrokeParameter, kArmsParameter, kDutyParameter};
+constexpr Parameter kHalfStep[] = {kSideParameter, kHalfStrokeParameter, kArmsParameter,
+                                   kDutyParameter};
 constexpr Parameter kWalk[] = {{.name = "steps",
                                 .types = types({kInt}),
                                 .default_text = "4",
+                                .default_value = 4,
                                 .doc = "how many; the first and the last are half ones"},
                                kStrokeParameter,
                                {.name = "side",
                                 .types = types({kSide}),
                                 .default_text = "right",
+                                .default_value = 1,
                                 .doc = "the leg that swings first"},
-                               kArmsParameter};
+                               kArmsParameter,
+                               kDutyParameter};
 constexpr Parameter kFace[] = {
     {.name = "toward",
      .types = types({kActor, kProp, kSet, kPoint, kAngle}),
@@ -75,6 +90,7 @@ constexpr Parameter kFace[] = {
 constexpr Parameter kTurn[] = {{.name = "by",
                                 .types = types({kAngle}),
                                 .default_text = "90 deg",
+                                .default_value = 90 * kDegree,
                                 .doc = "to the left where positive"},
                                kArmsParameter};
 constexpr Parameter kHold[] = {kBallParameter};
@@ -83,7 +99,11 @@ constexpr Parameter kReady[] = {
     {.name = "from", .types = types({kActor, kPoint}), .doc = "where it will come from"}};
 constexpr Parameter kReach[] = {
     {.name = "to", .types = types({kProp, kPoint, kActor}), .doc = "what the hand reaches for"},
-    {.name = "side", .types = types({kSide}), .default_text = "right", .doc = "the hand"}};
+    {.name = "side",
+     .types = types({kSide}),
+     .default_text = "right",
+     .default_value = 1,
+     .doc = "the hand"}};
 constexpr Parameter kThrow[] = {kBallParameter,
                                 {.name = "to",
                                  .types = types({kActor, kPoint}),
@@ -94,17 +114,15 @@ constexpr Parameter kFly[] = {
     {.name = "to",
      .types = types({kActor, kPoint}),
      .doc = "who will catch it, or where it lands"}};
-constexpr Parameter kTransfer[] = {{.name = "stroke",
-                                    .types = types({kLength}),
-                                    .default_text = "1.2 m",
-                                    .doc = "the way of the foot"}};
-constexpr Parameter kSupport[] = {{.name = "stroke",
-                                   .types = types({kLength}),
-                                   .default_text = "0.6 m",
-                                   .doc = "the way of the body while this leg carries it"}};
+constexpr Parameter kHalfParameter{.name = "half",
+                                   .types = types({kBool}),
+                                   .default_text = "no",
+                                   .doc = "whether the step leaves or reaches standing"};
+constexpr Parameter kLegOfStep[] = {kStrokeParameter, kHalfParameter, kDutyParameter};
 constexpr Parameter kArmSwing[] = {{.name = "angle",
                                     .types = types({kAngle}),
                                     .default_text = "22 deg",
+                                    .default_value = 22 * kDegree,
                                     .doc = "how far from hanging"}};
 
 constexpr auto kTable = std::to_array<MovementSignature>({
@@ -186,8 +204,8 @@ constexpr auto kTable = std::to_array<MovementSignature>({
     {.name = "support",
      .subject = SubjectKind::kLimb,
      .on_limbs = kLegs,
-     .parameters = kSupport,
-     .limbs = limb_set({Limb::kPelvis}),
+     .parameters = kLegOfStep,
+     .limbs = limbs_of({Limb::kPelvis, Limb::kBody}),
      .shortest = milliseconds(100),
      .longest = milliseconds(3000),
      .doc = "stands on this leg and carries the pelvis forward over it"},
@@ -223,7 +241,7 @@ constexpr auto kTable = std::to_array<MovementSignature>({
     {.name = "transfer",
      .subject = SubjectKind::kLimb,
      .on_limbs = kLegs,
-     .parameters = kTransfer,
+     .parameters = kLegOfStep,
      .limbs = {},
      .shortest = milliseconds(100),
      .longest = milliseconds(3000),

@@ -40,7 +40,7 @@ using ArgumentValue = std::variant<ActorIndex, PropIndex, SetIndex, std::int64_t
 struct Argument {
     std::string
         parameter;  // full name as in the signature, also where the scene gave it by position
-    ArgumentValue value;
+    ArgumentValue value = {};
 };
 
 // Who moves: an actor (`ana.step`), one limb of an actor (`ana.left_leg.transfer`), or a prop
@@ -49,14 +49,14 @@ enum class SubjectKind : std::uint8_t { kActor, kLimb, kProp };
 
 struct Subject {
     SubjectKind kind = SubjectKind::kActor;
-    ActorIndex actor;           // kActor, kLimb
+    ActorIndex actor = {};      // kActor, kLimb
     Limb limb = Limb::kPelvis;  // kLimb
-    PropIndex prop;             // kProp
+    PropIndex prop = {};        // kProp
 };
 
 struct BoundCall {
-    std::string movement;  // "half_step"
-    Subject subject;
+    std::string movement = {};  // "half_step"
+    Subject subject = {};
     std::vector<Argument>
         arguments;  // any order, each parameter at most once; what is missing takes its default
     std::vector<BoundCall>

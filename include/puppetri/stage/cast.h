@@ -17,21 +17,21 @@ using motion::SetIndex;
 enum class BodyKind : std::uint8_t { kMannequin, kStick };
 
 struct Actor {
-    std::string name;  // "ana"; unique among actors, props and sets
+    std::string name = {};  // "ana"; unique among actors, props and sets
     BodyKind body = BodyKind::kMannequin;
-    double height_m = 1.75;  // sole to crown, in [0.5, 3]
-    Vec3 position_world;     // of the root, on the floor
-    double heading_rad = 0;  // 0 faces +Z, pi/2 faces +X
+    double height_m = 1.75;    // sole to crown, in [0.5, 3]
+    Vec3 position_world = {};  // of the root, on the floor
+    double heading_rad = 0;    // 0 faces +Z, pi/2 faces +X
     std::string palette = "teal";
 };
 
 struct Prop {
-    std::string name;
+    std::string name = {};
     PropShape shape = PropShape::kSphere;
     Vec3 size_m{0.22, 0.22, 0.22};  // a sphere's diameter in x
     double mass_kg = 0.4;
-    ActorIndex held_by;   // in both hands at the start; none: lies at position_world
-    Vec3 position_world;  // of its centre
+    ActorIndex held_by = {};   // in both hands at the start; none: lies at position_world
+    Vec3 position_world = {};  // of its centre
     std::string palette = "red";
 };
 
@@ -39,17 +39,17 @@ enum class SetKind : std::uint8_t { kFloor, kRoad };
 
 // Something to stand on, at height 0. A road has a direction: `face(road)` turns there.
 struct Set {
-    std::string name;
+    std::string name = {};
     SetKind kind = SetKind::kFloor;
     double length_m = 20, width_m = 6;
-    Vec3 position_world;       // of its middle
+    Vec3 position_world = {};  // of its middle
     double direction_rad = 0;  // as a heading: 0 runs along +Z
 };
 
 struct Cast {
-    std::vector<Actor> actors;
-    std::vector<Prop> props;
-    std::vector<Set> sets;
+    std::vector<Actor> actors = {};
+    std::vector<Prop> props = {};
+    std::vector<Set> sets = {};
 };
 
 // All that is wrong with it: sizes out of range, a name used twice, a holder that is not in the

@@ -20,23 +20,23 @@ namespace puppetri::stage {
 // An event of the place that the movement may raise: name as in Movement::events ("foot_strike",
 // "release").
 struct RaisedName {
-    std::string name;
-    net::EventIndex event;
+    std::string name = {};
+    net::EventIndex event = {};
 };
 
 // What a place does. Its number in Play::actions is its net::ActionIndex.
 struct Action {
-    motion::BoundCall call;
-    std::string place;               // full path, "a.with_ball.P4"
-    std::string instance;            // path of the net instance, "a.with_ball"; empty at the top
-    std::vector<RaisedName> raises;  // the events that the net listens to
-    SourceSpan where;                // of the call, for diagnostics
+    motion::BoundCall call = {};
+    std::string place = {};     // full path, "a.with_ball.P4"
+    std::string instance = {};  // path of the net instance, "a.with_ball"; empty at the top
+    std::vector<RaisedName> raises = {};  // the events that the net listens to
+    SourceSpan where = {};                // of the call, for diagnostics
 };
 
 // Everything the stage needs before the run.
 struct Play {
-    Cast cast;
-    std::vector<Action> actions;
+    Cast cast = {};
+    std::vector<Action> actions = {};
 };
 
 class Stage final : public net::MovementHost {

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// From a call to a movement: `prepare` looks a call up, sees the stage as it is at this instant
+// (the figure itself in the context, everybody else in the surroundings), and answers a movement
+// with what the stage must know about it.
+#pragma once
+#include <optional>
+#include <span>
+
+#include "puppetri/base/diagnostic.h"
+#include "puppetri/motion/bound_call.h"
+#include "puppetri/motion/context.h"
+#include "puppetri/motion/flight.h"
+#include "puppetri/motion/movement.h"
+
+namespace puppetri::motion {
+
+// How another actor stands just before this instant.
+struct ActorState {
+    const figure::Figure* figure = nullptr;
+    Controls controls = {};
+    std::optional<Vec3> catches_at_world = {};  // where it waits for a ball, if it does
+};
+
+struct PropState {
+    Vec3 position_world = {};  // of the centre
+    double radius_m = 0;
+    ActorIndex held_by = {};  // none: in the air or on the floor
+};
+
+struct SetState {
+    Vec3 position_world = {};
+    double direction_rad = 0;
+};
+
+struct Surroundings {
+    std::span<const ActorState> actors = {};  // by ActorIndex, the subject too
+    std::span<const PropState> props = {};
+    std::span<const SetState> sets = {};
+    ActorIndex me = {};    // whom the context describes
+    PropIndex holds = {};  // what its hands hold before the movement
+};
+
+// Where the eyes go while a movement lasts. `own` leaves the head to the movement.
+enum class GazeKind : std::uint8_t { kOwn, kActor, kProp, kPoint };
+struct Gaze {
+    GazeKind kind = GazeKind::kOwn;
+    ActorIndex actor = {};
+    PropIndex prop = {};
+    Vec3 point_world = {};
+};
+
+struct Prepared {
+    MovementPtr movement = {};
+    PropIndex prop = {};                        // named by the call, for the score
+    bool takes_prop = false;                    // from its start both hands hold `prop` (catch)
+    bool releases_prop = false;                 // at its end the hands let `prop` go (throw)
+    std::optional<Vec3> catches_at_world = {};  // it waits there with open hands for `prop` (ready)
+    Gaze gaze = {};
+};
+
+// Prepares a movement of an actor or of one of its limbs.
+// Needs   the call fits its signature (scene has checked names and types) and has no token
+// attributes left. Gives   a movement that starts at context.at from the controls and rates of the
+// context. With a prescribed duration
+//         that is its duration, otherwise its own: a whole millisecond, rounded up, inside the
+//         signature's interval. Warnings (carrying what another holds) come in `notes`.
+// Fails   with all reasons why this figure cannot do it now: "out-of-reach" (catching a ball that
+// is elsewhere), ...
+Checked<Prepared> prepare(const BoundCall& call, const MotionContext& context,
+                          const Surroundings& around, Diagnostics& notes);
+
+// What a receiver does from the instant a ball is thrown to it: `base` (the movement it is in,
+// begun base_age_s ago) goes on, but the hands come together so that they have the ball, exactly,
+// when its flight ends.
+MovementPtr prepare_receive(const MotionContext& context, MovementPtr base, double base_age_s,
+                            const Flight& flight, double radius_m);
+
+// Where a figure with these controls would catch a ball: before its chest, at the height of its
+// belly.
+Vec3 catching_point(const figure::Figure& figure, const Controls& controls);
+
+}  // namespace puppetri::motion
