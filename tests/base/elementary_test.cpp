@@ -36,16 +36,11 @@ template <class F, class G, class Draw>
 double worst_error(F ours, G exact, Draw draw, int count = 200000) {
     RandomStream stream{.key = 0x5EED, .count = 0};
     double worst = 0;
-    double where = 0;
     for (int i = 0; i < count; ++i) {
         const double x = draw(stream);
         const double e = error_in_ulp(ours(x), exact(static_cast<long double>(x)));
-        if (!(e <= worst)) {
-            worst = e;
-            where = x;
-        }
+        worst = e <= worst ? worst : e;  // a NaN stays
     }
-    MESSAGE("worst error " << worst << " ulp at " << where);
     return worst;
 }
 
@@ -126,7 +121,6 @@ TEST_CASE("pow is within 1 ulp over its whole range [oracle]") {
             error_in_ulp(puppetri::pow(x, y), std::pow(static_cast<long double>(x), y));
         worst = std::max(worst, e);
     }
-    MESSAGE("worst error " << worst << " ulp");
     CHECK(worst < 1);
 }
 
@@ -227,7 +221,6 @@ TEST_CASE(
             std::atan2(static_cast<long double>(y), static_cast<long double>(x));
         worst = std::max(worst, error_in_ulp(puppetri::atan2(y, x), exact));
     }
-    MESSAGE("worst error " << worst << " ulp");
     CHECK(worst < 1.5);
     const double values[] = {0.0, -0.0, 1.0, -1.0, 5e-324, -5e-324, 1.7e308, -1.7e308, kInf, -kInf};
     for (const double y : values) {

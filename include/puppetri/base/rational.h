@@ -55,6 +55,10 @@ std::optional<Ticks> to_ticks(Rational seconds);
 // The same for a measured or drawn number of seconds. Fails also for NaN and infinities.
 std::optional<Ticks> to_ticks(double seconds);
 
+// The same without the flag, for what is drawn or measured at every step. never() where to_ticks
+// would fail.
+SimTime nearest_tick(double seconds);
+
 // Ticks to seconds, exactly. The sign of any time but never() is kept.
 Rational to_seconds(SimTime time);
 
