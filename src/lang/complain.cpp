@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+// The likeliest slip behind a statement that the grammar refuses, most telling first.
+#include "complain.h"
+
+#include <algorithm>
+#include <array>
+
+#include "puppetri/base/text.h"
+#include "puppetri/lang/units.h"
+
+namespace puppetri::lang {
+namespace {
+
+constexpr std::array kStatementWords = {
+    Kind::kPlace,  Kind::kState,  Kind::kData,  Kind::kEnum,     Kind::kToken,
+    Kind::kEvent,  Kind::kEvents, Kind::kUse,   Kind::kRule,     Kind::kFor,
+    Kind::kNet,    Kind::kCast,   Kind::kEnd,   Kind::kLanguage, Kind::kScene,
+    Kind::kFrames, Kind::kUntil,  Kind::kSeed,  Kind::kPace,     Kind::kTime,
+    Kind::kImport, Kind::kPublic, Kind::kStart, Kind::kFinish,   Kind::kConsumed};
+
+bool begins_statement(Kind kind) {
+    return std::find(kStatementWords.begin(), kStatementWords.end(), kind) != kStatementWords.end();
+}
+
+class Complaint {
+ public:
+    Complaint(Entry entry, std::span<const Token> tokens, std::uint32_t begin, std::uint32_t end,
+              const Reading& reading, const std::string& element, Report& report)
+        : entry_(entry),
+          tokens_(tokens),
+          begin_(begin),
+          end_(end),
+          at_(std::min(reading.furthest, end)),
+          reading_(reading),
+          element_(element),
+          report_(report) {}
+
+    void run() {
+        if (reading_.too_deep) {
+            error(at_, "too-deep", "this is nested too deeply",
+                  "name parts of it as states, and use the names");
+        } else if (!unclosed_bracket() && !unknown_statement() && !space_before_arguments() &&
+                   !unknown_word()) {
+            expected();
+        }
+    }
+
+ private:
+    const Token& token(std::uint32_t i) const { return tokens_[i]; }
+    std::string text(std::uint32_t i) const {
+        return std::string(report_.text().substr(token(i).begin, token(i).end - token(i).begin));
+    }
+    bool ended() const { return at_ >= end_; }
+    bool could_be(Kind kind) const {
+        return reading_.expected.test(static_cast<std::size_t>(kind));
+    }
+    void error(std::uint32_t at, std::string code, std::string message, std::string remedy) {
+        report_.error(token(at).begin, std::max(token(at).end, token(at).begin + 1),
+                      std::move(code), element_, std::move(message), std::move(remedy));
+    }
+
+    // A bracket that is open where the statement ends.
+    bool unclosed_bracket() {
+        std::vector<std::uint32_t> open;
+        for (std::uint32_t i = begin_; i < end_; ++i) {
+            const Kind kind = token(i).kind;
+            if (kind == Kind::kOpenParen || kind == Kind::kOpenList) {
+                open.push_back(i);
+            } else if (kind == Kind::kCloseParen || kind == Kind::kCloseList) {
+                const Kind wanted = kind == Kind::kCloseParen ? Kind::kOpenParen : Kind::kOpenList;
+                if (open.empty() || token(open.back()).kind != wanted) {
+                    error(i, "unmatched-bracket", "this bracket closes nothing",
+                          "remove it, or open one before");
+                    return true;
+                }
+                open.pop_back();
+            }
+        }
+        // Something before may be the real slip; only a statement that is good up to its end just
+        // lacks the bracket.
+        if (open.empty() || !ended()) {
+            return false;
+        }
+        const bool round = token(open.back()).kind == Kind::kOpenParen;
+        error(open.back(), "unclosed-bracket", "this bracket is not closed",
+              round ? "put ) where it ends" : "put ] where it ends");
+        return true;
+    }
+
+    bool unknown_statement() {
+        if (entry_ != Entry::kStatement) {
+            return false;
+        }
+        std::uint32_t first = begin_;
+        if (token(first).kind == Kind::kPublic && first + 1 < end_) {
+            ++first;
+        }
+        const Kind kind = token(first).kind;
+        const bool has_arrow = std::any_of(tokens_.begin() + begin_, tokens_.begin() + end_,
+                                           [](const Token& t) { return t.kind == Kind::kArrow; });
+        const bool has_colon =
+            first + 1 < end_ && (token(first + 1).kind == Kind::kColon ||
+                                 (token(first + 1).kind == Kind::kString && first + 2 < end_ &&
+                                  token(first + 2).kind == Kind::kColon));
+        if (has_colon || begins_statement(kind)) {
+            return false;
+        }
+        if (has_arrow) {
+            error(first, "missing-name", "a transition needs a name and a colon",
+                  "write NAME: P1 -> P2");
+            return true;
+        }
+        if (!is_word(kind)) {
+            error(first, "syntax", "no statement begins with " + std::string(describe(kind)),
+                  "statements begin with a word: place, rule, use ..., or NAME: of a transition");
+            return true;
+        }
+        std::vector<std::string> known;
+        for (const Kind word : kStatementWords) {
+            known.emplace_back(keyword_text(word));
+        }
+        const std::string_view nearest = nearest_name(text(first), known);
+        error(first, "unknown-keyword", "no statement begins with '" + text(first) + "'",
+              nearest.empty() ? "write place, rule, use ..., or NAME: P1 -> P2 for a transition"
+                              : "did you mean " + std::string(nearest) + "?");
+        return true;
+    }
+
+    // f (x): a call has no space; two values side by side have no meaning.
+    bool space_before_arguments() {
+        if (ended() || token(at_).kind != Kind::kOpenParen || at_ == begin_ ||
+            !is_word(token(at_ - 1).kind) || !token(at_).space_before) {
+            return false;
+        }
+        error(at_, "space-before-arguments",
+              "there is a space between '" + text(at_ - 1) + "' and its arguments",
+              "write " + text(at_ - 1) + "(...)");
+        return true;
+    }
+
+    bool unknown_word() {
+        if (ended() || !is_word(token(at_).kind) || could_be(Kind::kWord)) {
+            return false;
+        }
+        const bool after_number =
+            at_ > begin_ && token(at_ - 1).kind == Kind::kNumber && could_be(Kind::kUnitWord);
+        std::vector<std::string> known;
+        for (std::size_t i = 0; i < kKeywords.size(); ++i) {
+            if (could_be(static_cast<Kind>(kFirstKeyword + i)) &&
+                !is_operator(static_cast<Kind>(kFirstKeyword + i))) {
+                known.emplace_back(kKeywords[i]);
+            }
+        }
+        const std::vector<std::string> keywords = known;
+        if (after_number) {
+            known.insert(known.end(), unit_names().begin(), unit_names().end());
+        }
+        const std::string_view nearest = nearest_name(text(at_), known);
+        if (nearest.empty() && keywords.empty() && !after_number) {
+            return false;
+        }
+        const bool unit = after_number &&
+                          (nearest.empty() ||
+                           std::find(keywords.begin(), keywords.end(), nearest) == keywords.end());
+        std::string remedy = nearest.empty() ? "" : "did you mean " + std::string(nearest) + "?";
+        if (remedy.empty() && unit) {
+            remedy = "units are " +
+                     sample(std::vector<std::string>(unit_names().begin(), unit_names().end()));
+        } else if (remedy.empty()) {
+            remedy = "here may stand " + sample(keywords);
+        }
+        error(at_, unit ? "unknown-unit" : "unknown-keyword",
+              unit ? "'" + text(at_) + "' is no unit" : "'" + text(at_) + "' has no meaning here",
+              remedy);
+        return true;
+    }
+
+    static bool is_operator(Kind kind) {
+        switch (kind) {
+            case Kind::kAnd:
+            case Kind::kOr:
+            case Kind::kNot:
+            case Kind::kImplies:
+            case Kind::kMod:
+            case Kind::kDiv:
+            case Kind::kWeak:
+            case Kind::kRelease:
+                return true;
+            default:
+                return false;
+        }
+    }
+
+    static std::string sample(const std::vector<std::string>& words) {
+        std::string out;
+        for (std::size_t i = 0; i < words.size() && i < 12; ++i) {
+            out += i > 0 ? ", " : "";
+            out += words[i];
+        }
+        return words.size() > 12 ? out + ", ..." : out;
+    }
+
+    // The plain form: expected A or B, found C.
+    void expected() {
+        const bool value =
+            could_be(Kind::kNumber) && could_be(Kind::kOpenParen) && could_be(Kind::kWord);
+        const bool more = could_be(Kind::kPlus) && could_be(Kind::kAnd);  // after a whole value
+        std::vector<std::string> wanted;
+        if (value) {
+            wanted.emplace_back("a value");
+        }
+        for (std::size_t i = 0; i < 256; ++i) {
+            const auto kind = static_cast<Kind>(i);
+            if (!reading_.expected.test(i) || describe(kind).empty() || is_operator(kind)) {
+                continue;
+            }
+            const bool of_value = kind == Kind::kNumber || kind == Kind::kOpenParen ||
+                                  kind == Kind::kOpenList || kind == Kind::kString ||
+                                  kind == Kind::kWord || kind == Kind::kCount ||
+                                  kind == Kind::kMinus || kind == Kind::kPlus;
+            const bool joins =
+                kind == Kind::kPlus || kind == Kind::kMinus || kind == Kind::kTimes ||
+                kind == Kind::kOver || kind == Kind::kCaret || kind == Kind::kDots ||
+                kind == Kind::kEqual || kind == Kind::kNotEqual || kind == Kind::kLess ||
+                kind == Kind::kLessEqual || kind == Kind::kGreater || kind == Kind::kGreaterEqual ||
+                kind == Kind::kQuestion || kind == Kind::kDot || kind == Kind::kUnitWord ||
+                kind == Kind::kOpenList || kind == Kind::kOpenParen;
+            if ((value && of_value) || (more && joins)) {
+                continue;
+            }
+            wanted.emplace_back(describe(kind));
+        }
+        std::string list;
+        for (std::size_t i = 0; i < wanted.size() && i < 8; ++i) {
+            list += i == 0 ? "" : (i + 1 == wanted.size() ? " or " : ", ");
+            list += wanted[i];
+        }
+        std::string found =
+            ended() ? std::string("the end of the statement") : "'" + text(at_) + "'";
+        if (ended() && end_ < tokens_.size() && token(end_).kind == Kind::kOpenBlock) {
+            found = "'{'";
+        }
+        error(at_, "syntax",
+              list.empty() ? found + " cannot stand here" : "expected " + list + ", found " + found,
+              ended() ? "complete the statement on this line"
+                      : "remove it, or write what is missing before it");
+    }
+
+    Entry entry_;
+    std::span<const Token> tokens_;
+    std::uint32_t begin_, end_, at_;
+    const Reading& reading_;
+    const std::string& element_;
+    Report& report_;
+};
+
+}  // namespace
+
+void complain(Entry entry, std::span<const Token> tokens, std::uint32_t begin, std::uint32_t end,
+              const Reading& reading, const std::string& element, Report& report) {
+    Complaint(entry, tokens, begin, end, reading, element, report).run();
+}
+
+}  // namespace puppetri::lang

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// Positions in a file for people, and expressions as text.
+#include <algorithm>
+
+#include "puppetri/base/text.h"
+#include "puppetri/lang/syntax.h"
+
+namespace puppetri::lang {
+
+SourceSpan File::where(Span span) const {
+    SourceSpan out;
+    out.file = filename;
+    if (line_starts.empty()) {
+        return out;
+    }
+    const std::uint32_t begin = std::min(span.begin, static_cast<std::uint32_t>(text.size()));
+    const auto after = std::upper_bound(line_starts.begin(), line_starts.end(), begin);
+    out.line = static_cast<std::uint32_t>(after - line_starts.begin());
+    const std::uint32_t start = line_starts[out.line - 1];
+    const std::uint32_t end = std::max(
+        begin, std::min<std::uint32_t>(
+                   span.end, start + static_cast<std::uint32_t>(line_text(out.line).size())));
+    const std::string_view all = text;
+    out.column = 1 + count_code_points(all.substr(start, begin - start));
+    out.length = std::max<std::uint32_t>(1, count_code_points(all.substr(begin, end - begin)));
+    return out;
+}
+
+std::string File::line_text(std::uint32_t line) const {
+    if (line == 0 || line > line_starts.size()) {
+        return {};
+    }
+    const std::size_t begin = line_starts[line - 1];
+    std::size_t end = line < line_starts.size() ? line_starts[line] : text.size();
+    while (end > begin && (text[end - 1] == '\n' || text[end - 1] == '\r')) {
+        --end;
+    }
+    return text.substr(begin, end - begin);
+}
+
+namespace {
+
+bool plain_name(std::string_view name) {
+    const auto letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+               static_cast<unsigned char>(c) >= 0x80;
+    };
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    return !name.empty() && letter(name[0]) &&
+           std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || digit(c); });
+}
+
+// As a decimal where that is exact, which it is for all numbers that were written as one.
+std::string to_text(Rational number) {
+    std::int64_t denominator = number.denominator;
+    unsigned twos = 0, fives = 0;
+    for (; denominator % 2 == 0; denominator /= 2) {
+        ++twos;
+    }
+    for (; denominator % 5 == 0; denominator /= 5) {
+        ++fives;
+    }
+    const unsigned decimals = std::max(twos, fives);
+    if (denominator == 1 && decimals <= 18) {
+        const std::optional<Rational> scale = power(Rational{10}, static_cast<int>(decimals));
+        const std::optional<Rational> whole = scale ? multiply(number, *scale) : std::nullopt;
+        if (whole) {
+            return decimal_to_text(whole->numerator, decimals);
+        }
+    }
+    return std::to_string(number.numerator) + "/" + std::to_string(number.denominator);
+}
+
+std::string_view symbol(Op op) {
+    switch (op) {
+        case Op::kNone:
+            return "";
+        case Op::kNegate:
+            return "-";
+        case Op::kPlus:
+            return "+";
+        case Op::kNot:
+            return "not ";
+        case Op::kAdd:
+            return " + ";
+        case Op::kSubtract:
+            return " - ";
+        case Op::kMultiply:
+            return "*";
+        case Op::kDivide:
+            return "/";
+        case Op::kDiv:
+            return " div ";
+        case Op::kMod:
+            return " mod ";
+        case Op::kPower:
+            return "^";
+        case Op::kEqual:
+            return " = ";
+        case Op::kNotEqual:
+            return " != ";
+        case Op::kLess:
+            return " < ";
+        case Op::kLessEqual:
+            return " <= ";
+        case Op::kGreater:
+            return " > ";
+        case Op::kGreaterEqual:
+            return " >= ";
+        case Op::kAnd:
+            return " and ";
+        case Op::kOr:
+            return " or ";
+        case Op::kImplies:
+            return " implies ";
+        case Op::kUntil:
+            return " until ";
+        case Op::kWeakUntil:
+            return " weak until ";
+        case Op::kRelease:
+            return " release ";
+    }
+    return "";
+}
+
+bool compound(const Expr& e) {
+    return e.kind == ExprKind::kBinary || e.kind == ExprKind::kConditional ||
+           e.kind == ExprKind::kRange || (e.kind == ExprKind::kUnary && e.op == Op::kNot);
+}
+std::string part(const Expr& e) { return compound(e) ? "(" + to_text(e) + ")" : to_text(e); }
+
+std::string joined(const std::vector<Argument>& args, std::string_view between) {
+    std::string out;
+    for (std::size_t i = 0; i < args.size(); ++i) {
+        out += i > 0 ? between : "";
+        if (!args[i].name.text.empty()) {
+            out += args[i].name.text + ": ";
+        }
+        out += to_text(args[i].value);
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string to_text(const Path& path) {
+    std::string out;
+    for (const Name& step : path.steps) {
+        out += out.empty() ? "" : ".";
+        out += plain_name(step.text) ? step.text : "'" + step.text + "'";
+        for (const Expr& index : step.index) {
+            out += "[" + to_text(index) + "]";
+        }
+    }
+    return out;
+}
+
+std::string to_text(const Expr& e) {
+    std::string out;
+    switch (e.kind) {
+        case ExprKind::kNone:
+            return "";
+        case ExprKind::kNumber:
+            out = to_text(e.number);
+            break;
+        case ExprKind::kBool:
+            return e.number == Rational{1} ? "yes" : "no";
+        case ExprKind::kString:
+            return "\"" + e.text + "\"";
+        case ExprKind::kSymbol:
+            return e.text;
+        case ExprKind::kPath:
+            return to_text(e.path);
+        case ExprKind::kCount:
+            return "#" + to_text(e.path);
+        case ExprKind::kCountReady:
+            return "#ready " + to_text(e.path);
+        case ExprKind::kCall:
+            return to_text(e.path) + "(" + joined(e.args, ", ") + ")";
+        case ExprKind::kList:
+            out = "[" + joined(e.args, ", ") + "]";
+            break;
+        case ExprKind::kTuple:
+            out = "(" + joined(e.args, ", ") + ")";
+            break;
+        case ExprKind::kUnary:
+            return std::string(symbol(e.op)) + part(e.args[0].value);
+        case ExprKind::kConditional:
+            return part(e.args[0].value) + " ? " + part(e.args[1].value) + " : " +
+                   part(e.args[2].value);
+        case ExprKind::kRange:
+            return part(e.args[0].value) + " .. " + part(e.args[1].value);
+        case ExprKind::kBinary:
+            for (std::size_t i = 0; i < e.args.size(); ++i) {
+                out += i > 0 ? symbol(e.op) : "";
+                out += part(e.args[i].value);
+            }
+            return out;
+    }
+    return e.unit.empty() ? out : out + " " + e.unit;
+}
+
+}  // namespace puppetri::lang

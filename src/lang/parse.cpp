@@ -1,0 +1,532 @@
+// SPDX-License-Identifier: MIT
+// The driver: finds statements and blocks by their line ends and braces, lets the grammar read each
+// statement, and goes on after a defect with the next one, so that all defects of a file are told
+// at once.
+#include "puppetri/lang/parse.h"
+
+#include <algorithm>
+#include <array>
+
+#include "build.h"
+#include "complain.h"
+#include "puppetri/base/text.h"
+
+namespace puppetri::lang {
+namespace {
+
+enum class Level : std::uint8_t { kFile, kNet, kLoop };
+
+class Parser {
+ public:
+    Parser(File& file, std::uint32_t number, Diagnostics& out)
+        : file_(file),
+          report_(file, number, out),
+          lexed_(tokenize(file.text, report_)),
+          tokens_(lexed_.list) {
+        kinds_.reserve(tokens_.size());
+        for (const Token& token : tokens_) {
+            kinds_.push_back(static_cast<char>(token.kind));
+        }
+    }
+
+    void run() { body(file_.body, Level::kFile, nullptr, "the file"); }
+
+ private:
+    // ---- tokens
+
+    Kind kind(std::uint32_t i) const {
+        return tokens_[std::min<std::size_t>(i, tokens_.size() - 1)].kind;
+    }
+    void error(std::uint32_t at, std::string code, const std::string& element, std::string message,
+               std::string remedy) {
+        report_.error(tokens_[at].begin, std::max(tokens_[at].end, tokens_[at].begin + 1),
+                      std::move(code), element, std::move(message), std::move(remedy));
+    }
+
+    // Where the statement that begins here ends: before a line end, a brace, or the comma of a list
+    // of properties.
+    std::uint32_t statement_end(std::uint32_t begin, bool commas) const {
+        int open = 0;
+        for (std::uint32_t i = begin;; ++i) {
+            switch (kind(i)) {
+                case Kind::kNewline:
+                case Kind::kOpenBlock:
+                case Kind::kCloseBlock:
+                case Kind::kEndOfFile:
+                    return i;
+                case Kind::kOpenParen:
+                case Kind::kOpenList:
+                    ++open;
+                    break;
+                case Kind::kCloseParen:
+                case Kind::kCloseList:
+                    --open;
+                    break;
+                case Kind::kComma:
+                    if (commas && open <= 0) {
+                        return i;
+                    }
+                    break;
+                default:
+                    break;
+            }
+        }
+    }
+
+    // From an open brace to behind its partner, nothing read.
+    void skip_block() {
+        std::uint32_t open = 0;
+        for (; kind(at_) != Kind::kEndOfFile; ++at_) {
+            if (kind(at_) == Kind::kOpenBlock) {
+                ++open;
+            } else if (kind(at_) == Kind::kCloseBlock && --open == 0) {
+                ++at_;
+                return;
+            }
+        }
+    }
+
+    bool read(Entry entry, std::uint32_t begin, std::uint32_t end, const std::string& element) {
+        if (read_statement(entry, tokens_, kinds_, begin, end, reading_)) {
+            return true;
+        }
+        complain(entry, tokens_, begin, end, reading_, element, report_);
+        return false;
+    }
+    Builder builder(const std::string& element) {
+        Builder out(tokens_, reading_, report_);
+        out.element = element;
+        return out;
+    }
+
+    // ---- blocks of statements
+
+    // True when there is one more statement at at_; false when the block is over. `opener` is the
+    // block's brace; a file has none.
+    bool more(const std::uint32_t* opener, const std::string& element, bool commas) {
+        while (true) {
+            switch (kind(at_)) {
+                case Kind::kNewline:
+                    ++at_;
+                    break;
+                case Kind::kEndOfFile:
+                    if (opener != nullptr) {
+                        error(*opener, "unclosed-block", element, "this brace is not closed",
+                              "put } where " + element + " ends; is the file whole?");
+                    }
+                    return false;
+                case Kind::kCloseBlock:
+                    if (opener != nullptr) {
+                        ++at_;
+                        return false;
+                    }
+                    error(at_, "unmatched-brace", element, "this brace closes nothing",
+                          "remove it, or look for a brace too many above");
+                    ++at_;
+                    break;
+                case Kind::kOpenBlock:
+                    error(at_, "syntax", element, "a block needs a head before its brace",
+                          "write net NAME {, cast { or the like");
+                    skip_block();
+                    break;
+                case Kind::kComma:
+                    if (commas) {
+                        ++at_;
+                        break;
+                    }
+                    return true;
+                default:
+                    return true;
+            }
+            if (report_.full()) {
+                return false;
+            }
+        }
+    }
+
+    // After the head of a block: opens it. False (and reported) when there is no brace, or too many
+    // around.
+    bool open_block(std::uint32_t end, const std::string& element) {
+        at_ = end;
+        if (kind(at_) != Kind::kOpenBlock) {
+            error(std::min(end, static_cast<std::uint32_t>(tokens_.size() - 1)), "syntax", element,
+                  "'{' is missing", "put { at the end of this line, and } where the block ends");
+            return false;
+        }
+        if (blocks_ >= kMaxNesting) {
+            error(at_, "too-deep", element, "blocks are nested too deeply",
+                  "take the inner ones out");
+            skip_block();
+            return false;
+        }
+        ++at_;
+        ++blocks_;
+        return true;
+    }
+    void close_block() { --blocks_; }
+
+    bool at_line_start(std::uint32_t i) const {
+        const std::uint32_t begin = tokens_[i].begin;
+        return begin == 0 || file_.text[begin - 1] == '\n';
+    }
+
+    // What can only stand in a file, seen at the left margin inside a net: its brace was forgotten.
+    bool brace_forgotten(std::uint32_t begin) const {
+        switch (kind(begin)) {
+            case Kind::kNet:
+            case Kind::kCast:
+            case Kind::kScene:
+            case Kind::kImport:
+            case Kind::kLanguage:
+                return at_line_start(begin) && kind(begin + 1) != Kind::kColon;
+            default:
+                return false;
+        }
+    }
+
+    void body(Body& out, Level level, const std::uint32_t* opener, const std::string& element) {
+        while (!report_.full() && more(opener, element, false)) {
+            if (level != Level::kFile && brace_forgotten(at_)) {
+                error(at_, "unclosed-block", element, "'}' is missing before this line",
+                      "put } where " + element + " ends");
+                return;
+            }
+            const std::uint32_t begin = at_;
+            const std::uint32_t end = statement_end(begin, false);
+            at_ = end;
+            if (begin == end) {  // only a brace can be here
+                ++at_;
+                continue;
+            }
+            statement(out, level, begin, end, element);
+        }
+    }
+
+    // The kind of the statement, by its first words, when the grammar could not read it.
+    NodeKind guess(std::uint32_t begin) const {
+        switch (kind(begin)) {
+            case Kind::kNet:
+                return NodeKind::kNet;
+            case Kind::kFor:
+                return NodeKind::kFor;
+            case Kind::kCast:
+                return NodeKind::kCast;
+            case Kind::kEnum:
+                return NodeKind::kEnum;
+            case Kind::kEnd:
+                return NodeKind::kEnds;
+            default:
+                return NodeKind::kBlock;
+        }
+    }
+
+    void statement(Body& out, Level level, std::uint32_t begin, std::uint32_t end,
+                   const std::string& element) {
+        const bool brace = kind(end) == Kind::kOpenBlock;
+        const bool good = read_statement(Entry::kStatement, tokens_, kinds_, begin, end, reading_);
+        NodeKind which = good ? reading_.nodes[0].kind : guess(begin);
+        const bool is_block = which == NodeKind::kBlock;
+        if (good && is_block && (!brace || misspelt_block(begin))) {
+            // Two names side by side are the head of a block, or a slip.
+            complain(Entry::kStatement, tokens_, begin, end, reading_, element, report_);
+            which = guess(begin);
+            if (brace) {
+                recover(out, misspelt_net(begin) ? NodeKind::kNet : which, level, end, element);
+            }
+            return;
+        }
+        if (!good) {
+            complain(Entry::kStatement, tokens_, begin, end, reading_, element, report_);
+            if (brace) {
+                recover(out, which, level, end, element);
+            }
+            return;
+        }
+        if (!belongs(which, level, begin, element)) {
+            Body dropped;
+            if (brace) {
+                recover(dropped, which, level, end, element);
+            }
+            return;
+        }
+        build(out, which, level, end, element);
+        if (kind(at_) == Kind::kOpenBlock && at_ == end) {
+            error(at_, "syntax", element, "no block can follow this statement",
+                  "remove the braces, or the statement before");
+            skip_block();
+        }
+    }
+
+    // Reads the block of a head that could not be read, to tell its defects too.
+    void recover(Body&, NodeKind which, Level level, std::uint32_t end,
+                 const std::string& element) {
+        at_ = end;
+        Body dropped;
+        std::vector<Property> properties;
+        switch (which) {
+            case NodeKind::kNet:
+            case NodeKind::kFor:
+                inner_body(dropped, which == NodeKind::kNet ? Level::kNet : inner(level), end,
+                           element);
+                break;
+            case NodeKind::kCast:
+                cast(dropped, end);
+                break;
+            default:
+                skip_block();
+        }
+    }
+    static Level inner(Level level) { return level == Level::kNet ? Level::kNet : Level::kLoop; }
+
+    bool misspelt_net(std::uint32_t begin) const {
+        static const std::vector<std::string> known = {"net"};
+        return kind(begin) == Kind::kWord && !nearest_name(text(begin), known).empty();
+    }
+    // A head like a block's whose kind is a keyword, or nearly one.
+    bool misspelt_block(std::uint32_t begin) const {
+        static const std::vector<std::string> known = {"net", "cast", "enum"};
+        switch (kind(begin)) {
+            case Kind::kWord:
+                return text(begin) != "set" && !nearest_name(text(begin), known).empty();
+            case Kind::kPlace:
+            case Kind::kRule:
+            case Kind::kNet:
+            case Kind::kCast:
+            case Kind::kUse:
+            case Kind::kEvent:
+            case Kind::kState:
+            case Kind::kData:
+            case Kind::kToken:
+            case Kind::kFor:
+            case Kind::kEnd:
+            case Kind::kEnum:
+            case Kind::kScene:
+            case Kind::kImport:
+            case Kind::kPublic:
+            case Kind::kEvents:
+                return true;
+            default:
+                return false;
+        }
+    }
+    std::string_view text(std::uint32_t i) const {
+        return std::string_view(file_.text)
+            .substr(tokens_[i].begin, tokens_[i].end - tokens_[i].begin);
+    }
+
+    bool belongs(NodeKind which, Level level, std::uint32_t begin, const std::string& element) {
+        if (level == Level::kFile) {
+            return true;
+        }
+        switch (which) {
+            case NodeKind::kNet:
+            case NodeKind::kCast:
+            case NodeKind::kHeader:
+            case NodeKind::kImport:
+            case NodeKind::kBlock:
+            case NodeKind::kEvents:
+                error(begin, "misplaced", element,
+                      "'" + std::string(text(begin)) + "' cannot stand inside " + element,
+                      "put it outside; is a } missing above?");
+                return false;
+            default:
+                return true;
+        }
+    }
+
+    void build(Body& out, NodeKind which, Level level, std::uint32_t end,
+               const std::string& element) {
+        Builder b = builder(element);
+        switch (which) {
+            case NodeKind::kPlace:
+                out.places.push_back(b.place(0));
+                break;
+            case NodeKind::kTransition:
+                out.transitions.push_back(b.transition(0));
+                break;
+            case NodeKind::kState:
+                out.states.push_back(b.state(0));
+                break;
+            case NodeKind::kData:
+                out.data.push_back(b.data(0));
+                break;
+            case NodeKind::kToken:
+                out.token_types.push_back(b.token_type(0));
+                break;
+            case NodeKind::kEvent:
+                out.events.push_back(b.event(0));
+                break;
+            case NodeKind::kEvents:
+                out.event_files.push_back(b.event_file(0));
+                break;
+            case NodeKind::kUse:
+                out.uses.push_back(b.use(0));
+                break;
+            case NodeKind::kRule:
+                out.rules.push_back(b.rule(0));
+                break;
+            case NodeKind::kHeader:
+                b.header(0, file_.header);
+                break;
+            case NodeKind::kImport:
+                file_.imports.push_back(b.import(0));
+                break;
+            case NodeKind::kCast:
+                cast(out, end);
+                break;
+            case NodeKind::kNet: {
+                Net net = b.net(0);
+                inner_body(net.body, Level::kNet, end, "net " + net.name.text);
+                extend(net.span);
+                out.nets.push_back(std::move(net));
+                break;
+            }
+            case NodeKind::kFor: {
+                For loop = b.loop(0);
+                inner_body(loop.body, inner(level), end, "for " + loop.variable.text);
+                extend(loop.span);
+                out.loops.push_back(std::move(loop));
+                break;
+            }
+            case NodeKind::kEnum: {
+                Enumeration enumeration = b.enumeration(0);
+                items(Entry::kEnumValue, end, "enum " + enumeration.name.text,
+                      [&](Builder& item) { enumeration.values.push_back(item.enum_value(0)); });
+                extend(enumeration.span);
+                out.enumerations.push_back(std::move(enumeration));
+                break;
+            }
+            case NodeKind::kEnds: {
+                End ends;
+                ends.span = b.span(0);
+                items(Entry::kFormula, end, "end",
+                      [&](Builder& item) { ends.formulas.push_back(item.formula(0)); });
+                extend(ends.span);
+                out.ends.push_back(std::move(ends));
+                break;
+            }
+            default: {
+                Block block = b.block(0);
+                properties(block.properties, end, block.kind.text + " " + block.name.text);
+                extend(block.span);
+                out.blocks.push_back(std::move(block));
+            }
+        }
+    }
+
+    // A block's span goes to its closing brace.
+    void extend(Span& span) const {
+        if (at_ > 0) {
+            span.end = std::max(span.end, tokens_[at_ - 1].end);
+        }
+    }
+
+    void inner_body(Body& out, Level level, std::uint32_t end, const std::string& element) {
+        if (open_block(end, element)) {
+            const std::uint32_t opener = at_ - 1;
+            body(out, level, &opener, element);
+            close_block();
+        }
+    }
+
+    template <class F>
+    void items(Entry entry, std::uint32_t head_end, const std::string& element, F add) {
+        if (!open_block(head_end, element)) {
+            return;
+        }
+        const std::uint32_t opener = at_ - 1;
+        while (!report_.full() && more(&opener, element, true)) {
+            const std::uint32_t begin = at_;
+            at_ = statement_end(begin, true);
+            if (read(entry, begin, at_, element)) {
+                Builder item = builder(element);
+                add(item);
+            } else if (kind(at_) == Kind::kOpenBlock) {
+                skip_block();
+            }
+        }
+        close_block();
+    }
+
+    void cast(Body& out, std::uint32_t head_end) {
+        items(Entry::kMember, head_end, "cast", [&](Builder& item) {
+            CastMember member = item.member(0);
+            if (kind(at_) == Kind::kOpenBlock) {
+                properties(member.properties, at_, member.name.text);
+                extend(member.span);
+            }
+            out.cast.push_back(std::move(member));
+        });
+    }
+
+    void properties(std::vector<Property>& out, std::uint32_t head_end,
+                    const std::string& element) {
+        items(Entry::kProperty, head_end, element, [&](Builder& item) {
+            Property property = item.property(0);
+            if (kind(at_) == Kind::kOpenBlock) {
+                property.has_children = true;
+                properties(property.children, at_, element);
+                extend(property.span);
+            }
+            out.push_back(std::move(property));
+        });
+    }
+
+    File& file_;
+    Report report_;
+    Tokens lexed_;
+    const std::vector<Token>& tokens_;
+    std::vector<char> kinds_;
+    Reading reading_;
+    std::uint32_t at_ = 0;
+    std::uint32_t blocks_ = 0;
+};
+
+std::vector<std::uint32_t> find_lines(std::string_view text) {
+    std::vector<std::uint32_t> out = {0};
+    for (std::size_t i = text.find('\n'); i != std::string_view::npos; i = text.find('\n', i + 1)) {
+        out.push_back(static_cast<std::uint32_t>(i + 1));
+    }
+    return out;
+}
+
+}  // namespace
+
+Parsed parse(std::string_view text, std::string_view filename, std::uint32_t file) {
+    Parsed out;
+    out.file.filename = std::string(filename);
+    const auto whole_file = [&](std::string code, std::string message, std::string remedy) {
+        out.diagnostics.push_back({Severity::kError,
+                                   std::move(code),
+                                   {out.file.filename, 0, 0, 1},
+                                   "",
+                                   std::move(message),
+                                   std::move(remedy)});
+    };
+    if (text.size() > kMaxFileBytes) {
+        whole_file("file-too-large", "this file has more than 16 MiB",
+                   "is it a scene? Split it, and import the parts");
+        return out;
+    }
+    if (text.substr(0, 3) == "\xEF\xBB\xBF") {
+        text.remove_prefix(3);
+    }
+    out.file.text = std::string(text);
+    out.file.line_starts = find_lines(text);
+    if (const std::optional<std::size_t> bad = find_invalid_utf8(text)) {
+        const auto at = static_cast<std::uint32_t>(*bad);
+        Report(out.file, file, out.diagnostics)
+            .error(at, at + 1, "invalid-utf8", "", "this is not UTF-8 text",
+                   "save the file as UTF-8");
+        return out;
+    }
+    Parser(out.file, file, out.diagnostics).run();
+    std::stable_sort(out.diagnostics.begin(), out.diagnostics.end(),
+                     [](const Diagnostic& a, const Diagnostic& b) {
+                         return std::pair(a.where.line, a.where.column) <
+                                std::pair(b.where.line, b.where.column);
+                     });
+    return out;
+}
+
+}  // namespace puppetri::lang
