@@ -47,9 +47,9 @@ class InertialBody {
     InertialOffset breath_;
 };
 
-// Only the part in chest space, fingers and swivel; a hand that is fixed to the world
-// (world_weight) is the business of the movement that fixes it, except that the weight itself and
-// its world offset fade.
+// The part in chest space, fingers and swivel. The weight of the world's point fades too: towards a
+// movement that fixes the hand to the world, or away from one (the hand then leaves the point where
+// it was).
 class InertialArm {
  public:
     InertialArm() = default;
@@ -60,6 +60,8 @@ class InertialArm {
  private:
     InertialOffset3 position_, rotation_, world_position_, world_rotation_;
     InertialOffset swivel_, relaxed_, spread_, grip_, world_weight_;
+    Transform held_world_;
+    bool holds_world_ = false;
 };
 
 }  // namespace puppetri::motion

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "foot_path.h"
+
+#include "puppetri/base/elementary.h"
+#include "puppetri/math/rotation.h"
+
+namespace puppetri::motion {
+namespace {
+
+constexpr double kContact_m = 0.004, kContact_m_s = 0.25, kPutDown_s = 0.32, kRollFlat_s = 0.22;
+
+Quat foot_rotation(double yaw, double pitch) { return about_y(yaw) * about_x(-pitch); }
+
+}  // namespace
+
+double floor_under(const figure::Figure& figure, const Controls& controls) {
+    double lowest = 1e300;
+    for (int side = 0; side < 2; ++side) {
+        const figure::Leg& leg = figure.legs[side];
+        const LegControl& c = controls.legs[side];
+        const Transform foot{c.foot_rotation_world, c.ankle_world};
+        const Transform toes = foot * Transform{about_x(-c.toe_bend_rad), leg.toes_foot};
+        lowest = std::fmin(lowest, std::fmin((foot * leg.heel_foot).y, (toes * leg.ball_toes).y));
+    }
+    return lowest;
+}
+
+FootState foot_state(const figure::Figure& figure, const MotionContext& context, Side side) {
+    const figure::Leg& leg = figure.legs[index_of(side)];
+    const LegControl& c = context.now.legs[index_of(side)];
+    const ControlsRate::Leg& rate = context.rate.legs[index_of(side)];
+    const Vec3 ahead = rotate(c.foot_rotation_world, {0, 0, 1});
+    FootState s;
+    s.ankle = {c.ankle_world, rate.ankle_velocity_world, {}};
+    s.yaw = {heading_of(ahead), rate.foot_angular_world.y, 0};
+    const Vec3 axis = rotate(about_y(s.yaw.position), {1, 0, 0});
+    s.pitch = {puppetri::asin(clamp(ahead.y, -1, 1)), -dot(rate.foot_angular_world, axis), 0};
+    s.toe_bend = {c.toe_bend_rad, rate.toe_bend_rad_s, 0};
+    const double floor_y = floor_under(figure, context.now);
+    const Transform foot{c.foot_rotation_world, c.ankle_world};
+    const Vec3 w = rate.foot_angular_world;
+    auto planted = [&](Vec3 point, double height) {
+        const Vec3 velocity =
+            rate.ankle_velocity_world + cross(w, rotate(c.foot_rotation_world, point));
+        return std::fabs((foot * point).y - floor_y - height) < kContact_m &&
+               length(velocity) < kContact_m_s;
+    };
+    const double joint_height = leg.toes_foot.y - leg.ball_foot.y;
+    s.planted = planted(leg.heel_foot, 0) || planted(leg.toes_foot, joint_height);
+    return s;
+}
+
+Footprint footprint_of(const figure::Figure& figure, Side side, const FootState& s) {
+    const figure::Leg& leg = figure.legs[index_of(side)];
+    const Quat q = foot_rotation(s.yaw.position, s.pitch.position), flat = about_y(s.yaw.position);
+    Footprint p;
+    p.yaw_rad = s.yaw.position;
+    if (s.pitch.position > 0) {
+        p.heel = s.ankle.position + rotate(q, leg.heel_foot);
+        p.toes_joint = p.heel + rotate(flat, leg.toes_foot - leg.heel_foot);
+    } else {
+        p.toes_joint = s.ankle.position + rotate(q, leg.toes_foot);
+        p.heel = p.toes_joint + rotate(flat, leg.heel_foot - leg.toes_foot);
+    }
+    p.ankle_flat = p.heel - rotate(flat, leg.heel_foot);
+    return p;
+}
+
+Footprint footprint_at(const figure::Figure& figure, Side side, Vec3 ankle_flat, double yaw_rad) {
+    const figure::Leg& leg = figure.legs[index_of(side)];
+    const Quat flat = about_y(yaw_rad);
+    return {ankle_flat + rotate(flat, leg.heel_foot), ankle_flat + rotate(flat, leg.toes_foot),
+            yaw_rad, ankle_flat};
+}
+
+// With the pivot (heel or toes joint) at (y, z) in the foot's sagittal plane and pitch p, the pivot
+// seen from the ankle is
+//   up = y cos p + z sin p,  ahead = -y sin p + z cos p;   d up / dp = ahead,  d ahead / dp = -up,
+// and the ankle is the fixed pivot minus that.
+Motion3 ankle_on_print(const figure::Figure& figure, Side side, const Footprint& print,
+                       Motion1 pitch) {
+    const figure::Leg& leg = figure.legs[index_of(side)];
+    const bool on_heel = pitch.position > 0;
+    const Vec3 pivot = on_heel ? leg.heel_foot : leg.toes_foot;
+    const double s = puppetri::sin(pitch.position), c = puppetri::cos(pitch.position);
+    const double up = pivot.y * c + pivot.z * s, ahead = -pivot.y * s + pivot.z * c;
+    const double v = pitch.velocity, a = pitch.acceleration;
+    const Quat q = about_y(print.yaw_rad);
+    Motion3 m;
+    m.position = (on_heel ? print.heel : print.toes_joint) - rotate(q, {0, up, ahead});
+    m.velocity = rotate(q, {0, -ahead * v, up * v});
+    m.acceleration = rotate(q, {0, -ahead * a + up * v * v, up * a + ahead * v * v});
+    return m;
+}
+
+void FootPath::set_body(const figure::Figure& figure, Side side) {
+    heel_foot_ = figure.legs[index_of(side)].heel_foot;
+    toes_foot_ = figure.legs[index_of(side)].toes_foot;
+}
+void FootPath::stand(double begin_s, const Footprint& print) {
+    segments_.push_back({begin_s, true, print, {}, {}, {}});
+}
+void FootPath::swing(double begin_s, Curve3 ankle, Curve1 yaw, Curve1 toe_bend) {
+    segments_.push_back(
+        {begin_s, false, {}, std::move(ankle), std::move(yaw), std::move(toe_bend)});
+}
+
+LegControl FootPath::at(double t_s) const {
+    std::size_t i = segments_.size() - 1;
+    while (i > 0 && t_s < segments_[i].begin_s) {
+        --i;
+    }
+    const Segment& segment = segments_[i];
+    const double pitch = pitch_.at(t_s).position;
+    LegControl leg;
+    if (!segment.stands) {
+        leg.foot_rotation_world = foot_rotation(segment.yaw.at(t_s).position, pitch);
+        leg.ankle_world = segment.ankle.at(t_s).position;
+        leg.toe_bend_rad = segment.toe_bend.at(t_s).position;
+        return leg;
+    }
+    leg.foot_rotation_world = foot_rotation(segment.print.yaw_rad, pitch);
+    leg.ankle_world = pitch > 0
+                          ? segment.print.heel - rotate(leg.foot_rotation_world, heel_foot_)
+                          : segment.print.toes_joint - rotate(leg.foot_rotation_world, toes_foot_);
+    leg.toe_bend_rad = pitch < 0 ? -pitch : 0;
+    return leg;
+}
+
+Landing put_down(const figure::Figure& figure, Side side, const FootState& now, double floor_y) {
+    Landing landing;
+    landing.path.set_body(figure, side);
+    if (now.planted) {
+        landing.print = footprint_of(figure, side, now);
+        landing.path.stand(0, landing.print);
+        const bool rolls =
+            std::fabs(now.pitch.position) > 1e-9 || std::fabs(now.pitch.velocity) > 1e-9;
+        landing.path.set_pitch(rolls ? minimum_jerk({0, now.pitch}, {}, {kRollFlat_s, {}})
+                                     : Curve1({{0, {}}}));
+        return landing;
+    }
+    const double t = kPutDown_s;
+    Vec3 goal = now.ankle.position + now.ankle.velocity * (t * 0.4);
+    goal.y = floor_y + figure.ankle_height_m;
+    const double yaw = now.yaw.position + now.yaw.velocity * (t * 0.3);
+    landing.print = footprint_at(figure, side, goal, yaw);
+    landing.down_s = t;
+    const Vec3 p = now.ankle.position, v = now.ankle.velocity;
+    Curve3 ankle{minimum_jerk({0, {p.x, v.x, 0}}, {}, {t, {goal.x, 0, 0}}),
+                 minimum_jerk({0, {p.y, v.y, 0}}, {}, {t, {goal.y, 0, 0}}),
+                 minimum_jerk({0, {p.z, v.z, 0}}, {}, {t, {goal.z, 0, 0}})};
+    landing.path.swing(0, std::move(ankle), minimum_jerk({0, now.yaw}, {}, {t, {yaw, 0, 0}}),
+                       minimum_jerk({0, now.toe_bend}, {}, {t, {}}));
+    landing.path.stand(t, landing.print);
+    landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {t, {}}));
+    return landing;
+}
+
+}  // namespace puppetri::motion

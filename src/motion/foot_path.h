@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The way of one foot through a movement: it stands, rolls over heel and ball, and swings. Standing
+// is exact by construction: while the foot's pitch is positive (toes up) it turns about its heel,
+// while it is negative about the joint of the toes, which stay flat; both points are constants.
+#pragma once
+#include <vector>
+
+#include "puppetri/math/quintic.h"
+#include "puppetri/motion/context.h"
+
+namespace puppetri::motion {
+
+// A foot as yaw and pitch about its ankle; pitch is positive with the toes up.
+struct FootState {
+    Motion3 ankle;
+    Motion1 yaw, pitch, toe_bend;
+    bool planted = false;
+};
+
+// Reads the state out of controls: planted when a contact point is within 4 mm of the floor and
+// slow (0.25 m/s). The height of the floor is not known to a movement: it is given by the lower
+// foot.
+FootState foot_state(const figure::Figure& figure, const MotionContext& context, Side side);
+
+// Where a planted foot stands: the contact points' constants. The ankle of the same foot put down
+// flat is ankle_flat.
+struct Footprint {
+    Vec3 heel, toes_joint;  // world, on the floor and just above it
+    double yaw_rad = 0;
+    Vec3 ankle_flat;
+};
+Footprint footprint_of(const figure::Figure& figure, Side side, const FootState& planted);
+Footprint footprint_at(const figure::Figure& figure, Side side, Vec3 ankle_flat, double yaw_rad);
+
+// The ankle of a foot on its print, for a given motion of its pitch: position, velocity and
+// acceleration.
+Motion3 ankle_on_print(const figure::Figure& figure, Side side, const Footprint& print,
+                       Motion1 pitch);
+
+class FootPath {
+ public:
+    // Stands on the print from begin_s on.
+    void stand(double begin_s, const Footprint& print);
+    // Is in the air from begin_s on.
+    void swing(double begin_s, Curve3 ankle, Curve1 yaw, Curve1 toe_bend);
+    void set_pitch(Curve1 pitch) { pitch_ = std::move(pitch); }
+    void set_body(const figure::Figure& figure, Side side);
+
+    LegControl at(double t_s) const;
+    const Curve1& pitch() const { return pitch_; }
+
+ private:
+    struct Segment {
+        double begin_s = 0;
+        bool stands = true;
+        Footprint print;
+        Curve3 ankle;
+        Curve1 yaw, toe_bend;
+    };
+    std::vector<Segment> segments_;
+    Curve1 pitch_;
+    Vec3 heel_foot_, toes_foot_;
+};
+
+// A path that puts the foot down where it is heading (or rolls it flat where it stands) and leaves
+// it there.
+struct Landing {
+    FootPath path;
+    Footprint print;
+    double down_s = 0;  // when it stands; 0 when it already does
+};
+Landing put_down(const figure::Figure& figure, Side side, const FootState& now, double floor_y);
+
+// The floor under the lower foot.
+double floor_under(const figure::Figure& figure, const Controls& controls);
+
+}  // namespace puppetri::motion

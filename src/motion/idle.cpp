@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// A living stand: slow sums of sines with phases from the seed, plus the fading difference to where
+// the figure was.
+#include "puppetri/motion/idle.h"
+
+#include "foot_path.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/base/random.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/inertialize.h"
+#include "times.h"
+
+namespace puppetri::motion {
+namespace {
+
+// A standing leg is bent by 9 degrees: cos 4.5 degrees of its length. Standing on locked knees
+// looks like a doll, and straight legs leave inverse kinematics no room.
+constexpr double kStandingReach = 0.9969;
+// The pelvis stands this part of the height ahead of the ankles: the foot reaches ahead of them.
+constexpr double kPelvisAhead = 0.012;
+
+// How high the hips may be above an ankle so that the leg keeps the standing reach.
+double hips_height_over(const figure::Figure& figure, int side, const LegControl& leg, Vec3 pelvis,
+                        Quat rotation) {
+    const Vec3 hip = rotate(rotation, figure.legs[side].hip_pelvis);
+    const double dx = pelvis.x + hip.x - leg.ankle_world.x,
+                 dz = pelvis.z + hip.z - leg.ankle_world.z;
+    const double reach = kStandingReach * figure.leg_m;
+    return leg.ankle_world.y +
+           std::sqrt(std::fmax(reach * reach - dx * dx - dz * dz, 0.04 * reach * reach)) - hip.y;
+}
+
+}  // namespace
+
+ArmControl hanging_arm(const figure::Figure& figure, Side side) {
+    const figure::Arm& arm = figure.arms[index_of(side)];
+    const double s = side == Side::kLeft ? 1 : -1;
+    ArmControl control;
+    // Elbow bent by about 20 degrees, hand beside the thigh, thumb ahead and a little inward.
+    const Vec3 direction = normalized(Vec3{0.13 * s, -1, 0.11});
+    control.chest_from_hand.translation = arm.clavicle_chest + arm.shoulder_clavicle +
+                                          direction * (0.983 * (arm.upper_m + arm.fore_m));
+    control.chest_from_hand.rotation =
+        about_x(-radians(14)) * about_y(-s * radians(22)) * about_z(-s * radians(86));
+    return control;
+}
+
+PelvisControl pelvis_over_feet(const figure::Figure& figure, const Controls& feet) {
+    const double left = heading_of(feet.legs[0].foot_rotation_world);
+    const double heading =
+        left + turn_between(left, heading_of(feet.legs[1].foot_rotation_world)) / 2;
+    PelvisControl pelvis;
+    pelvis.rotation_world = about_y(heading);
+    pelvis.position_world = (feet.legs[0].ankle_world + feet.legs[1].ankle_world) * 0.5 +
+                            rotate(pelvis.rotation_world, {0, 0, kPelvisAhead * figure.height_m});
+    pelvis.position_world.y = std::fmin(
+        hips_height_over(figure, 0, feet.legs[0], pelvis.position_world, pelvis.rotation_world),
+        hips_height_over(figure, 1, feet.legs[1], pelvis.position_world, pelvis.rotation_world));
+    return pelvis;
+}
+
+Controls standing(const figure::Figure& figure, Vec3 position_world, double heading_rad) {
+    Controls c;
+    const Quat heading = about_y(heading_rad);
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+        const double s = side == Side::kLeft ? 1 : -1;
+        LegControl& leg = c.legs[index_of(side)];
+        leg.foot_rotation_world = heading;
+        leg.ankle_world = position_world + rotate(heading, {s * figure.stance_half_width_m,
+                                                            figure.ankle_height_m, 0});
+        c.arms[index_of(side)] = hanging_arm(figure, side);
+    }
+    c.pelvis = pelvis_over_feet(figure, c);
+    return c;
+}
+
+namespace {
+
+class Idle final : public Movement {
+ public:
+    Idle(const MotionContext& context, const IdleSpec& spec)
+        : figure_(context.figure), liveliness_(spec.liveliness) {
+        limbs = spec.limbs;
+        duration =
+            context.duration.ticks >= 0 ? context.duration : whole_milliseconds(spec.duration_s);
+        RandomStream random{stream_key(context.seed, "", "idle")};
+        for (double& phase : phase_) {
+            phase = 2 * kPi * random.uniform();
+        }
+        plan_feet(context);
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            home_.arms[index_of(side)] = hanging_arm(figure_, side);
+        }
+        // The own motion at the start, its rate, and the differences to the state that was found.
+        constexpr double h = 1e-4;
+        Controls own = home_, later = home_;
+        live(0, own);
+        live(h, later);
+        const ControlsRate rate = rate_between(own, later, h);
+        const double settle_s = 0.7;
+        pelvis_ = {context.now.pelvis.position_world - own.pelvis.position_world,
+                   context.rate.pelvis_velocity_world - rate.pelvis_velocity_world, settle_s};
+        pelvis_turn_ =
+            InertialBody({context.now.pelvis.rotation_world, {}, 0}, turning(context.rate),
+                         {own.pelvis.rotation_world, {}, 0}, turning(rate), settle_s);
+        body_ = InertialBody(context.now.body, context.rate, own.body, rate, settle_s);
+        for (int i = 0; i < 2; ++i) {
+            arms_[i] = InertialArm(context.now.arms[i], context.rate.arms[i], own.arms[i],
+                                   rate.arms[i], settle_s);
+            swivel_[i] = {context.now.legs[i].swivel_rad, context.rate.legs[i].swivel_rad_s,
+                          settle_s};
+        }
+    }
+
+    void sample(double t_s, Controls& out) const override {
+        Controls c = home_;
+        live(t_s, c);
+        c.pelvis.position_world = c.pelvis.position_world + pelvis_.at(t_s);
+        BodyControl turn{c.pelvis.rotation_world, {}, 0};
+        pelvis_turn_.apply(t_s, turn);
+        c.pelvis.rotation_world = turn.pelvis_from_chest;
+        body_.apply(t_s, c.body);
+        for (int i = 0; i < 2; ++i) {
+            c.legs[i] = feet_[i].at(t_s);
+            c.legs[i].swivel_rad = swivel_[i].at(t_s);
+            arms_[i].apply(t_s, c.arms[i]);
+        }
+        copy_limbs(limbs, c, out);
+    }
+
+ private:
+    static ControlsRate turning(const ControlsRate& rate) {
+        ControlsRate r;
+        r.chest_angular_pelvis = rate.pelvis_angular_world;
+        return r;
+    }
+
+    void plan_feet(const MotionContext& context) {
+        const double floor_y = floor_under(figure_, context.now);
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            Landing landing = put_down(figure_, side, foot_state(figure_, context, side), floor_y);
+            home_.legs[index_of(side)] =
+                LegControl{landing.print.ankle_flat, about_y(landing.print.yaw_rad), 0, 0};
+            feet_[index_of(side)] = std::move(landing.path);
+            const SimTime down = whole_milliseconds(landing.down_s);
+            if (landing.down_s > 0) {
+                phases.push_back({leg_of(side), Phase::kSwing, {}, down});
+                events.push_back({down, "foot_strike", leg_of(side)});
+            }
+            phases.push_back({leg_of(side), Phase::kSupport, down, kOpenEnd});
+        }
+        home_.pelvis = pelvis_over_feet(figure_, home_);
+        home_.pelvis.position_world.y -=
+            0.002 * figure_.height_m;  // room for the weight's way from leg to leg
+    }
+
+    // A slow wave in [-1, 1], period near `period_s`, never repeating in sight.
+    double wave(int channel, double period_s, double t_s) const {
+        const double w = 2 * kPi / period_s;
+        return 0.66 * puppetri::sin(w * t_s + phase_[channel]) +
+               0.34 * puppetri::sin(1.618 * w * t_s + phase_[channel + 1]);
+    }
+
+    void live(double t_s, Controls& c) const {
+        const double k = liveliness_, h = figure_.height_m;
+        const double weight = k * wave(0, 7.5, t_s), lean = k * wave(2, 5.1, t_s),
+                     glance = k * wave(4, 6.3, t_s);
+        const Quat home = c.pelvis.rotation_world;
+        c.pelvis.position_world =
+            c.pelvis.position_world + rotate(home, Vec3{0.009 * weight, 0, 0.003 * lean} * h);
+        // The hip of the free leg drops; the trunk stays upright over it.
+        const double list = radians(1.2) * weight;
+        c.pelvis.rotation_world = home * about_y(radians(1.5) * lean) * about_z(list);
+        c.body.pelvis_from_chest = about_z(-1.5 * list) * about_y(radians(1.2) * glance) *
+                                   about_x(radians(1.5 + 0.8 * lean));
+        c.body.chest_from_head = about_y(radians(7) * glance) *
+                                 about_x(radians(-1.5 + 2.5 * k * wave(6, 4.7, t_s))) *
+                                 about_z(0.5 * list);
+        c.body.breath = k * (0.5 - 0.5 * puppetri::cos(2 * kPi * t_s / 3.9 + phase_[8]));
+        for (int i = 0; i < 2; ++i) {
+            const double s = i == 0 ? 1 : -1;
+            Vec3& hand = c.arms[i].chest_from_hand.translation;
+            hand = hand + Vec3{-0.003 * weight, 0, 0.004 * lean - s * 0.002 * glance} * h;
+        }
+    }
+
+    const figure::Figure& figure_;
+    double liveliness_;
+    double phase_[9] = {};
+    Controls home_;
+    std::array<FootPath, 2> feet_;
+    InertialOffset3 pelvis_;
+    InertialBody pelvis_turn_, body_;
+    std::array<InertialArm, 2> arms_;
+    std::array<InertialOffset, 2> swivel_;
+};
+
+}  // namespace
+
+MovementPtr make_idle(const MotionContext& context, const IdleSpec& spec) {
+    return std::make_shared<Idle>(context, spec);
+}
+
+}  // namespace puppetri::motion

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Bollo's quintic, per channel.
+#include "puppetri/motion/inertialize.h"
+
+#include "puppetri/base/elementary.h"
+#include "puppetri/math/rotation.h"
+
+namespace puppetri::motion {
+
+// x(t) = A t^5 + B t^4 + C t^3 + a0/2 t^2 + v0 t + x0 with x, x', x'' = 0 at t1 and a0 chosen for
+// least jerk at the end (Bollo, slide 27): a0 = (-8 v0 t1 - 20 x0) / t1^2, but never against the
+// direction of the offset. Bollo shortens t1 when the offset shrinks fast (t1 <= -5 x0 / v0), so
+// that it does not overshoot. An offset that grows, or a rate without an offset, must be allowed to
+// move; there the quintic with a0 = 0 is used.
+InertialOffset::InertialOffset(double x0, double v0, double blend_s)
+    : x0_(x0), v0_(v0), end_s_(blend_s) {
+    double t = blend_s;
+    if (!(t > 0)) {
+        x0_ = v0_ = end_s_ = 0;
+        return;
+    }
+    if (x0 * v0 < 0) {
+        t = std::fmin(t, std::fmax(-5 * x0 / v0, blend_s / 3));
+        const double a0 = (-8 * v0 * t - 20 * x0) / (t * t);
+        a0_ = a0 * x0 > 0 ? a0 : 0;
+    }
+    end_s_ = t;
+    const double t2 = t * t, t3 = t2 * t;
+    a_ = -(a0_ * t2 + 6 * v0 * t + 12 * x0) / (2 * t3 * t2);
+    b_ = (3 * a0_ * t2 + 16 * v0 * t + 30 * x0) / (2 * t3 * t);
+    c_ = -(3 * a0_ * t2 + 12 * v0 * t + 20 * x0) / (2 * t3);
+}
+
+double InertialOffset::at(double t) const {
+    return t >= end_s_ ? 0 : x0_ + t * (v0_ + t * (a0_ / 2 + t * (c_ + t * (b_ + t * a_))));
+}
+
+InertialOffset3::InertialOffset3(Vec3 x0, Vec3 v0, double blend_s)
+    : x_(x0.x, v0.x, blend_s), y_(x0.y, v0.y, blend_s), z_(x0.z, v0.z, blend_s) {}
+
+Vec3 InertialOffset3::at(double t_s) const { return {x_.at(t_s), y_.at(t_s), z_.at(t_s)}; }
+
+namespace {
+
+// The offset of a rotation is the vector r with now = exp(r) own. Its rate follows from the angular
+// velocity w of the offset by the inverse of the left Jacobian of the exponential map (Bullo and
+// Murray 1995):
+//   r' = w - r x w / 2 + (1 / |r|^2 - cot(|r| / 2) / (2 |r|)) r x (r x w).
+InertialOffset3 of_rotation(Quat now, Vec3 now_rate, Quat own, Vec3 own_rate, double blend_s) {
+    const Quat offset = now * conjugate(own);
+    const Vec3 w = now_rate - rotate(offset, own_rate);
+    const Vec3 r = to_rotation_vector(offset);
+    const double angle = length(r);
+    const double half = angle / 2;
+    const double k = angle < 1e-4 ? 1.0 / 12
+                                  : 1 / (angle * angle) -
+                                        puppetri::cos(half) / (puppetri::sin(half) * 2 * angle);
+    return {r, w - cross(r, w) * 0.5 + cross(r, cross(r, w)) * k, blend_s};
+}
+void turn(Quat& q, Vec3 offset) { q = normalized(from_rotation_vector(offset) * q); }
+
+}  // namespace
+
+InertialBody::InertialBody(const BodyControl& now, const ControlsRate& rate, const BodyControl& own,
+                           const ControlsRate& own_rate, double blend_s)
+    : chest_(of_rotation(now.pelvis_from_chest, rate.chest_angular_pelvis, own.pelvis_from_chest,
+                         own_rate.chest_angular_pelvis, blend_s)),
+      head_(of_rotation(now.chest_from_head, rate.head_angular_chest, own.chest_from_head,
+                        own_rate.head_angular_chest, blend_s)),
+      breath_(now.breath - own.breath, rate.breath_per_s - own_rate.breath_per_s, blend_s) {}
+
+void InertialBody::apply(double t_s, BodyControl& body) const {
+    turn(body.pelvis_from_chest, chest_.at(t_s));
+    turn(body.chest_from_head, head_.at(t_s));
+    body.breath += breath_.at(t_s);
+}
+
+InertialArm::InertialArm(const ArmControl& now, const ControlsRate::Arm& rate,
+                         const ArmControl& own, const ControlsRate::Arm& own_rate, double blend_s)
+    : position_(now.chest_from_hand.translation - own.chest_from_hand.translation,
+                rate.hand_velocity_chest - own_rate.hand_velocity_chest, blend_s),
+      rotation_(of_rotation(now.chest_from_hand.rotation, rate.hand_angular_chest,
+                            own.chest_from_hand.rotation, own_rate.hand_angular_chest, blend_s)),
+      swivel_(now.swivel_rad - own.swivel_rad, rate.swivel_rad_s - own_rate.swivel_rad_s, blend_s),
+      relaxed_(now.relaxed - own.relaxed, rate.relaxed_per_s - own_rate.relaxed_per_s, blend_s),
+      spread_(now.spread - own.spread, rate.spread_per_s - own_rate.spread_per_s, blend_s),
+      grip_(now.grip - own.grip, rate.grip_per_s - own_rate.grip_per_s, blend_s),
+      world_weight_(now.world_weight - own.world_weight,
+                    rate.world_weight_per_s - own_rate.world_weight_per_s, blend_s) {
+    holds_world_ = now.world_weight > 0 && !(own.world_weight > 0);
+    held_world_ = now.world_from_hand;
+    if (now.world_weight > 0 && own.world_weight > 0) {
+        world_position_ = {now.world_from_hand.translation - own.world_from_hand.translation,
+                           rate.hand_velocity_world - own_rate.hand_velocity_world, blend_s};
+        world_rotation_ =
+            of_rotation(now.world_from_hand.rotation, rate.hand_angular_world,
+                        own.world_from_hand.rotation, own_rate.hand_angular_world, blend_s);
+    }
+}
+
+void InertialArm::apply(double t_s, ArmControl& arm) const {
+    arm.chest_from_hand.translation = arm.chest_from_hand.translation + position_.at(t_s);
+    turn(arm.chest_from_hand.rotation, rotation_.at(t_s));
+    if (holds_world_) {
+        arm.world_from_hand = held_world_;
+    }
+    arm.world_from_hand.translation = arm.world_from_hand.translation + world_position_.at(t_s);
+    turn(arm.world_from_hand.rotation, world_rotation_.at(t_s));
+    arm.swivel_rad += swivel_.at(t_s);
+    arm.relaxed += relaxed_.at(t_s);
+    arm.spread += spread_.at(t_s);
+    arm.grip += grip_.at(t_s);
+    arm.world_weight += world_weight_.at(t_s);
+}
+
+}  // namespace puppetri::motion
