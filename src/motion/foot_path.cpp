@@ -136,7 +136,7 @@ Landing put_down(const figure::Figure& figure, Side side, const FootState& now, 
         const bool rolls =
             std::fabs(now.pitch.position) > 1e-9 || std::fabs(now.pitch.velocity) > 1e-9;
         landing.path.set_pitch(rolls ? minimum_jerk({0, now.pitch}, {}, {kRollFlat_s, {}})
-                                     : Curve1({{0, {}}}));
+                                     : Curve1());
         return landing;
     }
     const double t = kPutDown_s;

@@ -80,7 +80,8 @@ class Solver {
              .swivel_zero = pole,
              .swivel_rad = side == figure::kLeft ? -control.swivel_rad : control.swivel_rad,
              .upper_m = leg.thigh_m,
-             .lower_m = leg.shank_m});
+             .lower_m = leg.shank_m,
+             .soft = 0.998});
         const Quat hip = set(leg.hip, limb.start_rotation);
         const Quat knee = set(leg.knee, limb.middle_rotation);
         set(leg.ankle, conjugate(hip * knee) * goal.rotation);
