@@ -3,7 +3,9 @@
 
 function(puppetri_flags target)
     target_compile_features(${target} PUBLIC cxx_std_20)
-    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
+    # Designated initializers leave members at their defaults on purpose.
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
+        -ffp-contract=off
         $<$<BOOL:${PUPPETRI_WERROR}>:-Werror>)
 endfunction()
 

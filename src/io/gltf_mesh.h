@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Meshes and skins of a glTF file.
+#pragma once
+#include <vector>
+
+#include "gltf_buffer.h"
+#include "puppetri/figure/mesh.h"
+#include "puppetri/figure/skeleton.h"
+
+namespace puppetri::io {
+
+struct GltfPrimitive {
+    int indices = 0, positions = 0, normals = 0;
+    int joints = -1, weights = -1;  // accessors; -1 for a rigid mesh
+    int material = -1;              // of the file
+};
+
+struct GltfMesh {
+    std::string name;
+    std::vector<GltfPrimitive> primitives;
+};
+
+struct GltfMeshes {
+    std::vector<GltfMesh> meshes;
+    std::vector<figure::Material> materials;
+};
+
+// Gives the mesh's index in the file, or -1 where it has no triangles. Needs consistent array
+// sizes.
+int add_mesh(GltfMeshes& all, GltfBuffer& buffer, const std::string& name,
+             const figure::Mesh& mesh);
+
+// The accessor of the inverse bind matrices of the skeleton's rest pose.
+int add_inverse_bind_matrices(GltfBuffer& buffer, const figure::Skeleton& skeleton);
+
+void write_meshes(JsonWriter& json, const GltfMeshes& all);
+void write_materials(JsonWriter& json, const GltfMeshes& all);
+
+}  // namespace puppetri::io
