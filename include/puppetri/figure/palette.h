@@ -26,7 +26,7 @@ std::span<const Palette> palettes();
 // The palette of that name, or null.
 const Palette* find_palette(std::string_view name);
 
-// From "#rrggbb" order sRGB bytes to linear.
+// From sRGB bytes, each in [0, 255], to linear.
 Colour linear_from_srgb(int red, int green, int blue);
 
 }  // namespace puppetri::figure

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Implicit shapes: a solid as the set of points where a smooth function is negative. Round cones and ellipsoids,
+// squashed and turned at will, are joined one after the other by a smooth minimum, which rounds the seams as flesh does.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "puppetri/math/transform.h"
+
+namespace puppetri::figure {
+
+struct FieldSample {
+    double distance = 0;  // about metres; negative inside
+    Vec3 gradient;        // about unit length, pointing outwards
+};
+
+// The hull of two spheres, in a frame of its own that may be squashed: the point p of model space is seen at
+// (u . (p - origin) / scale.x, v . ... / scale.y, w . ... / scale.z), where u, v, w = rotation of the model axes.
+struct RoundCone {
+    Vec3 a, b;                // in the local frame before scaling, metres
+    double radius_a = 0, radius_b = 0;
+    Vec3 origin_model;
+    Quat model_from_local;
+    Vec3 scale{1, 1, 1};
+    double blend_m = 0.01;    // how far the seam to what came before is rounded
+    std::uint8_t level = 0;   // how many times finer than the coarsest cells it is to be meshed (powers of two)
+    bool carve = false;       // taken away instead of added
+};
+
+// A box along the axes.
+struct Bounds {
+    Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+    void add(Vec3 p);
+    bool overlaps(const Bounds& other) const;
+    Bounds grown(double by) const;
+};
+
+// Primitives in the order in which they are joined.
+class ImplicitShape {
+   public:
+    void add(const RoundCone& cone);
+    int size() const { return static_cast<int>(cones_.size()); }
+    const RoundCone& cone(int i) const { return cones_[static_cast<std::size_t>(i)]; }
+
+    // Where cone i is; and where it can matter for the sign of the whole.
+    const Bounds& tight(int i) const { return tight_[static_cast<std::size_t>(i)]; }
+    const Bounds& reach(int i) const { return reach_[static_cast<std::size_t>(i)]; }
+
+    // The joined function of the cones listed, in that order. An empty list gives a large distance.
+    double distance(Vec3 p_model, std::span<const std::uint16_t> active) const;
+    FieldSample sample(Vec3 p_model, std::span<const std::uint16_t> active) const;
+
+   private:
+    std::vector<RoundCone> cones_;
+    std::vector<Bounds> tight_, reach_;
+};
+
+}  // namespace puppetri::figure

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The body as an implicit shape: which cones and ellipsoids, where along the bones, how thick. All the modelling is here.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "contour.h"
+#include "implicit_shape.h"
+#include "puppetri/figure/skeleton.h"
+
+namespace puppetri::figure {
+
+// The joints that the shape hangs on, in the model space of the rest pose. Sides: 0 left (+X), 1 right.
+struct Landmarks {
+    double unit_m = 1;  // one metre of a figure 1.75 m tall
+    Vec3 hips, spine, chest, upper_chest, neck, head;
+    std::array<Vec3, 2> shoulder, elbow, wrist, hip, knee, ankle, toes;
+    std::array<std::array<std::array<Vec3, 4>, 5>, 2> fingers;  // side, thumb to little, three joints and the tip
+};
+
+// Needs a humanoid skeleton with the names of VRM 1.0.
+Landmarks landmarks_of(const Skeleton& skeleton);
+
+ImplicitShape mannequin_shape(const Landmarks& marks);
+ContourGrid mannequin_grid(const Landmarks& marks);
+
+// Clothes are zones of the skin, divided by the zero sets of these functions.
+enum class Zone : std::uint8_t { kSkin, kHair, kShirt, kTrousers, kShoes };
+inline constexpr int kZoneCount = 5;
+
+// A border: negative on the side of `inside`. Borders are cut in order; a point belongs to the first zone whose border
+// it is inside of, or to the skin.
+inline constexpr int kBorderCount = 5;
+double border(const Landmarks& marks, int which, Vec3 p_model);
+Zone zone_inside(int which);
+// False where the border does not concern the point, for instance the hair line at the feet.
+bool border_applies(const Landmarks& marks, int which, Vec3 p_model);
+
+}  // namespace puppetri::figure
