@@ -1,56 +1,44 @@
 // SPDX-License-Identifier: MIT
-// The camera: what a scene says about it, and the smooth path that comes of it. The path is made once, from the whole
-// performance, with filters that look ahead as well as back: the camera neither lags nor jerks, and asking for a view
-// at any time gives the same answer in any order.
+// The path of a camera. It is made once, from the whole performance, with filters that look ahead as well as back: the
+// camera neither lags nor jerks, and asking for a view at any time gives the same answer in any order.
 #pragma once
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "puppetri/base/time.h"
 #include "puppetri/math/transform.h"
+#include "puppetri/scene/scene.h"
 #include "puppetri/stage/performance.h"
 
 namespace puppetri::render {
 
-inline constexpr double kDefaultFov_rad = 0.61;  // 35 degrees, vertical
-
-// `camera main { at (0, 1.6, 8) m, keeps ana and rui in view, moves with them }`
-struct Camera {
-    std::string name = "main";
-    Vec3 at_world{0, 1.6, 8};
-    std::optional<Vec3> looking_at_world;    // none: the middle of those kept in view; without them straight to -Z
-    std::vector<stage::ActorIndex> keeps;    // empty: nobody; the camera stands as it is told
-    bool moves_with_them = false;            // keeps its offset to the middle of those kept in view
-    double fov_rad = kDefaultFov_rad;        // vertical, in (0.05, 2.6)
-};
-
 // The camera looks along its own -Z, +Y is up, +X right.
 struct View {
     Transform world_from_camera;
-    double fov_rad = kDefaultFov_rad;  // vertical
+    double fov_rad = 0.61;  // vertical
 };
 
-// A camera for a scene that has none: before the first actor, keeps all in view and moves with them.
-Camera default_camera(const stage::Performance& performance);
+// A camera for a scene that has none: before and beside the first actor, keeps all in view and moves with them.
+scene::Camera default_camera(const stage::Performance& performance);
 
 class CameraPath {
- public:
-    // Follows those kept in view through the whole performance: it turns to their middle and, where they would leave
-    // the picture (a tenth of it is margin), steps back along its line of sight.
+   public:
+    // Follows those kept in view through the whole performance: it turns to their middle (unless it looks at a point)
+    // and, when it moves with them, keeps its offset to that middle. Without a field of view of its own it takes the
+    // one, between 12 and 60 degrees and constant for the whole film, that holds everybody kept in view with a margin
+    // of a tenth; what even that would lose, it holds by stepping back along its line of sight.
     // Needs   indices in `keeps` are actors of the performance; aspect > 0 is width / height.
-    // Cost    8 poses per second of performance and actor.
-    CameraPath(const Camera& camera, const stage::Performance& performance, double aspect);
+    // Gives   a camera that keeps nobody in view stands still, looking at its point or straight to -Z.
+    // Cost    8 poses per second of performance and actor kept.
+    CameraPath(const scene::Camera& camera, const stage::Performance& performance, double aspect);
 
     View view(SimTime at) const;
 
- private:
+   private:
     struct Key {
         Vec3 eye_world, target_world;
     };
-    std::vector<Key> keys_;
-    double interval_s_ = 1;
-    double fov_rad_ = kDefaultFov_rad;
+    std::vector<Key> keys_;  // control points of a uniform cubic B-spline
+    double fov_rad_ = 0.61;
 };
 
 }  // namespace puppetri::render

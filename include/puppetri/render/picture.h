@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a performance: the figures and props under a sun and a sky, on a floor or a road, ray traced with Embree.
+// Pictures of a performance: its figures and props under a sun and a sky, on a floor or a road, ray traced with Embree.
 // A PictureMaker belongs to one thread; several may look at one performance.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "puppetri/base/time.h"
@@ -22,21 +22,25 @@ struct Picture {
 };
 
 struct Look {
-    Vec3 to_sun_world{-0.45, 0.75, 0.5};  // any length above 0
-    int edge_samples = 6;                 // primary rays per pixel where the first ones disagree; 1 turns it off
+    Vec3 to_sun_world{-0.55, 0.78, 0.42};  // any length above 0, y > 0
+    int edge_samples = 5;                  // more primary rays per pixel where the first ones disagree; 0 turns it off
+    bool dither = true;                    // half a step of noise against bands in the sky; off for .gif and .apng
 };
 
 // All that a picture needs beside the time. What it points to must outlive the PictureMaker.
 struct RenderScene {
     const stage::Performance* performance = nullptr;
-    std::span<const stage::Set> sets;  // the first one is drawn; none: an endless floor
     const CameraPath* camera = nullptr;
+    std::span<const stage::Set> sets;  // the first one is drawn; none: an endless floor
     Look look;
 };
 
+// Empty when this build can draw. Otherwise what is missing and how to get it, for the user.
+std::string why_no_pictures();
+
 class PictureMaker {
- public:
-    // Needs performance and camera, 16 <= width, height <= 8192.
+   public:
+    // Needs why_no_pictures() empty, performance and camera, 16 <= width, height <= 8192.
     PictureMaker(const RenderScene& scene, int width, int height);
     ~PictureMaker();
     PictureMaker(PictureMaker&&) noexcept;
@@ -47,7 +51,7 @@ class PictureMaker {
     // Cost    about 0.1 s for 1280x720 with two mannequins on one core.
     void draw(SimTime at, Picture& out);
 
- private:
+   private:
     struct Data;
     std::unique_ptr<Data> data_;
 };

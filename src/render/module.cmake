@@ -1,0 +1,18 @@
+# Embree 3 traces the rays, libpng packs pictures. Without them the module builds, and says at run time what is missing.
+find_package(embree 3 QUIET)
+find_package(PNG QUIET)
+find_package(Threads REQUIRED)
+target_link_libraries(puppetri_render PUBLIC Threads::Threads)
+if(embree_FOUND)
+    target_link_libraries(puppetri_render PRIVATE embree)
+    target_compile_definitions(puppetri_render PRIVATE PUPPETRI_WITH_EMBREE=1)
+endif()
+if(PNG_FOUND)
+    target_link_libraries(puppetri_render PRIVATE PNG::PNG)
+    target_compile_definitions(puppetri_render PRIVATE PUPPETRI_WITH_PNG=1)
+endif()
+if(NOT embree_FOUND OR NOT PNG_FOUND)
+    message(STATUS "Embree 3 or libpng not found: no pictures, no films (Debian: apt-get install libembree-dev libpng-dev)")
+endif()
+# Shading is loops over floats; nothing here feeds a time or a hash.
+target_compile_options(puppetri_render PRIVATE -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math)
