@@ -179,12 +179,12 @@ void PictureMaker::Data::set_eye(SimTime at) {
 // Pixels; false behind the eye.
 bool PictureMaker::Data::project(Float3 p, std::array<float, 2>& out) const {
     const Float3 d = p - eye.at;
-    const float depth = dot(d, eye.ahead);
-    if (depth < 0.05f) {
+    const float ahead_m = dot(d, eye.ahead);
+    if (ahead_m < 0.05f) {
         return false;
     }
-    const float x = dot(d, eye.right) / (dot(eye.right, eye.right) * depth);
-    const float y = dot(d, eye.up) / (dot(eye.up, eye.up) * depth);
+    const float x = dot(d, eye.right) / (dot(eye.right, eye.right) * ahead_m);
+    const float y = dot(d, eye.up) / (dot(eye.up, eye.up) * ahead_m);
     out = {(x + 1) * 0.5f * static_cast<float>(width), (1 - y) * 0.5f * static_cast<float>(height)};
     return true;
 }
@@ -378,18 +378,18 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
         const Float3 albedo = float3(s.material->base_colour);
         const float facing = shadow ? 0 : std::max(0.0f, dot(n, sun));
         const Float3 ambient = environment.ambient(n) * (0.25f + 0.75f * s.ambient) * s.ambient;
-        Float3 light = albedo * (environment.sun() * facing + ambient);
+        Float3 shine = albedo * (environment.sun() * facing + ambient);
         // A little shine: Blinn and Phong's highlight of the sun, and the sky mirrored at grazing angles (Schlick).
         const float gloss = 1 - s.material->roughness;
         const Float3 half = normalized(sun - d[i]);
         const float power = 8 + 90 * gloss * gloss;
         if (facing > 0) {
-            light = light + environment.sun() * (facing * 0.10f * gloss * (power + 8) / 25 * std::pow(std::max(0.0f, dot(n, half)), power));
+            shine = shine + environment.sun() * (facing * 0.10f * gloss * (power + 8) / 25 * std::pow(std::max(0.0f, dot(n, half)), power));
         }
         const float grazing = 1 - std::max(0.0f, -dot(n, d[i]));
         const float g2 = grazing * grazing;
-        light = light + environment.ambient({n.x, 0.6f + 0.4f * n.y, n.z}) * (s.ambient * (0.35f * g2 * g2 * grazing) * (0.35f + gloss));
-        out[i].light = environment.haze(light, out[i].depth, d[i]);
+        shine = shine + environment.ambient({n.x, 0.6f + 0.4f * n.y, n.z}) * (s.ambient * (0.35f * g2 * g2 * grazing) * (0.35f + gloss));
+        out[i].light = environment.haze(shine, out[i].depth, d[i]);
     }
 }
 
