@@ -1,0 +1,23 @@
+# Builds tests/consumer against an installed Puppetri, or against its source folder, and runs it.
+# cmake -DMODE=package|subdirectory -DSOURCE=... -DBUILD=... -DWORK=... -P consumer.cmake
+function(run)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+    message("${output}")
+    if(NOT code EQUAL 0)
+        message(FATAL_ERROR "failed: ${ARGN}")
+    endif()
+endfunction()
+
+file(REMOVE_RECURSE "${WORK}")
+set(arguments -S "${SOURCE}/tests/consumer" -B "${WORK}/build" -G Ninja -DCMAKE_BUILD_TYPE=Release)
+if(MODE STREQUAL package)
+    run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${WORK}/prefix")
+    run(${CMAKE_COMMAND} ${arguments} "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
+else()
+    run(${CMAKE_COMMAND} ${arguments} "-DPUPPETRI_SOURCE=${SOURCE}")
+endif()
+run(${CMAKE_COMMAND} --build "${WORK}/build")
+run("${WORK}/build/consumer")
+if(MODE STREQUAL package)
+    run("${WORK}/build/stage_consumer")
+endif()
