@@ -40,7 +40,7 @@ class Complaint {
             error(at_, "too-deep", "this is nested too deeply",
                   "name parts of it as states, and use the names");
         } else if (!unclosed_bracket() && !unknown_statement() && !space_before_arguments() &&
-                   !unknown_word()) {
+                   !double_arrow() && !unknown_form() && !unknown_word()) {
             expected();
         }
     }
@@ -76,9 +76,7 @@ class Complaint {
                 open.pop_back();
             }
         }
-        // Something before may be the real slip; only a statement that is good up to its end just
-        // lacks the bracket.
-        if (open.empty() || !ended()) {
+        if (open.empty()) {
             return false;
         }
         const bool round = token(open.back()).kind == Kind::kOpenParen;
@@ -138,6 +136,60 @@ class Complaint {
         return true;
     }
 
+    // a => b
+    bool double_arrow() {
+        if (ended() || !could_be(Kind::kArrow) || token(at_).kind != Kind::kEqual ||
+            at_ + 1 >= end_ || token(at_ + 1).kind != Kind::kGreater) {
+            return false;
+        }
+        report_.error(token(at_).begin, token(at_ + 1).end, "syntax", element_, "'=>' is no arrow",
+                      "write ->");
+        return true;
+    }
+
+    // rule NAME nevr P: what stands there could begin a formula, and was meant as a form.
+    bool unknown_form() {
+        if (entry_ != Entry::kStatement || token(begin_).kind != Kind::kRule) {
+            return false;
+        }
+        std::uint32_t form = begin_ + 2;
+        form += form < end_ && token(form).kind == Kind::kString ? 1 : 0;
+        if (form >= end_ || token(form).kind != Kind::kWord || at_ == form) {
+            return false;
+        }
+        static const std::vector<std::string> known = {
+            "never",          "always",        "possible",   "mutex", "exactly_one", "alternate",
+            "bounded",        "deadlock_free", "reversible", "ends",  "live",        "quasi_live",
+            "nobody_freezes", "ctl",           "ltl",        "after"};
+        const std::string_view nearest = nearest_name(text(form), known);
+        if (nearest.empty()) {
+            return false;
+        }
+        error(form, "unknown-keyword", "no rule has the form '" + text(form) + "'",
+              "did you mean " + std::string(nearest) + "?");
+        return true;
+    }
+
+    // What people write for a unit.
+    static std::string_view unit_for(std::string_view word) {
+        struct Alias {
+            std::string_view word, unit;
+        };
+        static constexpr std::array<Alias, 22> kAliases = {
+            {{"sec", "s"},      {"secs", "s"},      {"second", "s"},       {"seconds", "s"},
+             {"minute", "min"}, {"minutes", "min"}, {"mins", "min"},       {"hour", "h"},
+             {"hours", "h"},    {"msec", "ms"},     {"millisecond", "ms"}, {"milliseconds", "ms"},
+             {"meter", "m"},    {"meters", "m"},    {"metre", "m"},        {"metres", "m"},
+             {"degree", "deg"}, {"degrees", "deg"}, {"radians", "rad"},    {"kilogram", "kg"},
+             {"newton", "N"},   {"fps", "Hz"}}};
+        for (const Alias& alias : kAliases) {
+            if (alias.word == word) {
+                return alias.unit;
+            }
+        }
+        return "";
+    }
+
     bool unknown_word() {
         if (ended() || !is_word(token(at_).kind) || could_be(Kind::kWord)) {
             return false;
@@ -146,8 +198,9 @@ class Complaint {
             at_ > begin_ && token(at_ - 1).kind == Kind::kNumber && could_be(Kind::kUnitWord);
         std::vector<std::string> known;
         for (std::size_t i = 0; i < kKeywords.size(); ++i) {
-            if (could_be(static_cast<Kind>(kFirstKeyword + i)) &&
-                !is_operator(static_cast<Kind>(kFirstKeyword + i))) {
+            const auto word = static_cast<Kind>(kFirstKeyword + i);
+            const bool path_operator = word == Kind::kUntil && could_be(Kind::kRelease);
+            if (could_be(word) && !is_operator(word) && !path_operator) {
                 known.emplace_back(kKeywords[i]);
             }
         }
@@ -155,7 +208,8 @@ class Complaint {
         if (after_number) {
             known.insert(known.end(), unit_names().begin(), unit_names().end());
         }
-        const std::string_view nearest = nearest_name(text(at_), known);
+        const std::string_view alias = after_number ? unit_for(text(at_)) : "";
+        const std::string_view nearest = alias.empty() ? nearest_name(text(at_), known) : alias;
         if (nearest.empty() && keywords.empty() && !after_number) {
             return false;
         }
