@@ -98,11 +98,27 @@ void FootPath::set_body(const figure::Figure& figure, Side side) {
     toes_foot_ = figure.legs[index_of(side)].toes_foot;
 }
 void FootPath::stand(double begin_s, const Footprint& print) {
-    segments_.push_back({begin_s, true, print, {}, {}, {}});
+    segments_.push_back({begin_s, true, print, {}, {}, {}, {}});
 }
-void FootPath::swing(double begin_s, Curve3 ankle, Curve1 yaw, Curve1 toe_bend) {
-    segments_.push_back(
-        {begin_s, false, {}, std::move(ankle), std::move(yaw), std::move(toe_bend)});
+void FootPath::swing(double begin_s, const Transform& world_from_path, Curve3 ankle_path,
+                     Curve1 yaw, Curve1 toe_bend) {
+    segments_.push_back({begin_s,
+                         false,
+                         {},
+                         world_from_path,
+                         std::move(ankle_path),
+                         std::move(yaw),
+                         std::move(toe_bend)});
+}
+
+double drop_below_ankle(const figure::Figure& figure, Side side, double pitch_rad,
+                        double toe_bend_rad) {
+    const figure::Leg& leg = figure.legs[index_of(side)];
+    const Quat foot = about_x(-pitch_rad), toes = about_x(-toe_bend_rad);
+    const double heel = rotate(foot, leg.heel_foot).y;
+    const double ball = rotate(foot, leg.toes_foot + rotate(toes, leg.ball_toes)).y;
+    const double tip = rotate(foot, leg.toes_foot + rotate(toes, leg.toe_tip_toes)).y;
+    return -std::fmin(heel, std::fmin(ball, tip));
 }
 
 LegControl FootPath::at(double t_s) const {
@@ -115,7 +131,7 @@ LegControl FootPath::at(double t_s) const {
     LegControl leg;
     if (!segment.stands) {
         leg.foot_rotation_world = foot_rotation(segment.yaw.at(t_s).position, pitch);
-        leg.ankle_world = segment.ankle.at(t_s).position;
+        leg.ankle_world = segment.world_from_path * segment.ankle_path.at(t_s).position;
         leg.toe_bend_rad = segment.toe_bend.at(t_s).position;
         return leg;
     }
@@ -149,7 +165,7 @@ Landing put_down(const figure::Figure& figure, Side side, const FootState& now, 
     Curve3 ankle{minimum_jerk({0, {p.x, v.x, 0}}, {}, {t, {goal.x, 0, 0}}),
                  minimum_jerk({0, {p.y, v.y, 0}}, {}, {t, {goal.y, 0, 0}}),
                  minimum_jerk({0, {p.z, v.z, 0}}, {}, {t, {goal.z, 0, 0}})};
-    landing.path.swing(0, std::move(ankle), minimum_jerk({0, now.yaw}, {}, {t, {yaw, 0, 0}}),
+    landing.path.swing(0, {}, std::move(ankle), minimum_jerk({0, now.yaw}, {}, {t, {yaw, 0, 0}}),
                        minimum_jerk({0, now.toe_bend}, {}, {t, {}}));
     landing.path.stand(t, landing.print);
     landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {t, {}}));

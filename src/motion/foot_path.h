@@ -42,7 +42,8 @@ class FootPath {
     // Stands on the print from begin_s on.
     void stand(double begin_s, const Footprint& print);
     // Is in the air from begin_s on.
-    void swing(double begin_s, Curve3 ankle, Curve1 yaw, Curve1 toe_bend);
+    void swing(double begin_s, const Transform& world_from_path, Curve3 ankle_path, Curve1 yaw,
+               Curve1 toe_bend);
     void set_pitch(Curve1 pitch) { pitch_ = std::move(pitch); }
     void set_body(const figure::Figure& figure, Side side);
 
@@ -54,13 +55,19 @@ class FootPath {
         double begin_s = 0;
         bool stands = true;
         Footprint print;
-        Curve3 ankle;
+        Transform world_from_path;
+        Curve3 ankle_path;
         Curve1 yaw, toe_bend;
     };
     std::vector<Segment> segments_;
     Curve1 pitch_;
     Vec3 heel_foot_, toes_foot_;
 };
+
+// How far below the ankle the lowest point of a foot in the air lies, for its pitch and the bend of
+// its toes.
+double drop_below_ankle(const figure::Figure& figure, Side side, double pitch_rad,
+                        double toe_bend_rad);
 
 // A path that puts the foot down where it is heading (or rolls it flat where it stands) and leaves
 // it there.

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// A step as a movement: the plan of the lower body, a trunk that turns against the pelvis, a head
+// that looks ahead and arms that swing against the legs.
+#include "puppetri/motion/gait.h"
+
+#include <algorithm>
+
+#include "gait_plan.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/base/require.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/idle.h"
+#include "puppetri/motion/inertialize.h"
+#include "times.h"
+
+namespace puppetri::motion {
+
+double step_duration_s(const StepSpec& spec) {
+    return spec.kind == StepKind::kWhole ? spec.duration_s : spec.duration_s / 2;
+}
+LimbSet support_limbs(Side transfer) {
+    return limb_set(Limb::kPelvis).with(Limb::kBody).with(leg_of(other(transfer)));
+}
+LimbSet transfer_limbs(Side transfer) { return limb_set(leg_of(transfer)); }
+
+namespace {
+
+// After its end a step slows down to a halt within this time constant, along its own curves.
+constexpr double kHalt_s = 0.05;
+
+class Step final : public Movement {
+ public:
+    Step(const MotionContext& context, const StepSpec& spec)
+        : figure_(context.figure), spec_(spec), plan_(plan_step(context, spec)) {
+        limbs = spec.limbs;
+        duration =
+            context.duration.ticks > 0 ? context.duration : whole_milliseconds(plan_.duration_s);
+        tell_phases();
+        constexpr double h = 1e-4;
+        const Controls own = own_at(0), later = own_at(h);
+        const ControlsRate rate = rate_between(own, later, h);
+        const double blend_s = 0.8 * plan_.duration_s;
+        body_ = InertialBody(context.now.body, context.rate, own.body, rate, blend_s);
+        ControlsRate turn_now, turn_own;
+        turn_now.chest_angular_pelvis = context.rate.pelvis_angular_world;
+        turn_own.chest_angular_pelvis = rate.pelvis_angular_world;
+        pelvis_turn_ = InertialBody({context.now.pelvis.rotation_world, {}, 0}, turn_now,
+                                    {own.pelvis.rotation_world, {}, 0}, turn_own, blend_s);
+        for (int i = 0; i < 2; ++i) {
+            arms_[i] = InertialArm(context.now.arms[i], context.rate.arms[i], own.arms[i],
+                                   rate.arms[i], blend_s);
+            swivel_[i] = {context.now.legs[i].swivel_rad, context.rate.legs[i].swivel_rad_s,
+                          blend_s};
+        }
+    }
+
+    void sample(double t_s, Controls& out) const override {
+        const double T = plan_.duration_s;
+        const double t = t_s <= T ? t_s : T + kHalt_s * (1 - puppetri::exp(-(t_s - T) / kHalt_s));
+        Controls c = own_at(t);
+        BodyControl turn{c.pelvis.rotation_world, {}, 0};
+        pelvis_turn_.apply(t, turn);
+        c.pelvis.rotation_world = turn.pelvis_from_chest;
+        body_.apply(t, c.body);
+        for (int i = 0; i < 2; ++i) {
+            arms_[i].apply(t, c.arms[i]);
+            c.legs[i].swivel_rad = swivel_[i].at(t);
+        }
+        if (t_s > T) {
+            const double late = t_s - T;
+            c.body.breath +=
+                (0.5 - 0.5 * puppetri::cos(2 * kPi * late / 3.9)) * (1 - puppetri::exp(-late));
+        }
+        copy_limbs(limbs, c, out);
+    }
+
+ private:
+    Controls own_at(double t) const {
+        const Quat heading = about_y(plan_.heading_rad);
+        const double yaw = plan_.pelvis_yaw.at(t).position, list = plan_.pelvis_list.at(t).position;
+        Controls c;
+        c.pelvis.position_world = plan_.world_from_path * extended(t);
+        c.pelvis.rotation_world = heading * about_y(yaw) * about_z(list);
+        const double ratio = clamp(t / plan_.duration_s, 0, 1);
+        const double bump = 16 * ratio * ratio * (1 - ratio) * (1 - ratio);
+        const double lean = radians(2.5) + plan_.lean_rad * bump;
+        // The chest turns against the pelvis and stays level.
+        c.body.pelvis_from_chest = about_z(-1.2 * list) * about_y(-1.7 * yaw) * about_x(lean);
+        const Quat path_from_chest = about_y(yaw) * about_z(list) * c.body.pelvis_from_chest;
+        c.body.chest_from_head =
+            slerp(Quat{}, conjugate(path_from_chest) * about_x(radians(2)), 0.9);
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            c.legs[index_of(side)] = plan_.feet[index_of(side)].at(t);
+            const double swing = plan_.arm_swing.at(t).position;
+            c.arms[index_of(side)] = swung_arm(side, side == Side::kLeft ? swing : -swing);
+        }
+        return c;
+    }
+
+    // Slightly more ahead than behind; the elbow bends as the arm comes forward.
+    ArmControl swung_arm(Side side, double angle) const {
+        ArmControl arm = hanging_arm(figure_, side);
+        const figure::Arm& body = figure_.arms[index_of(side)];
+        const Vec3 shoulder = body.clavicle_chest + body.shoulder_clavicle;
+        const double ahead = angle + radians(1.5);
+        const double bent = 0.25 * (angle + radians(20)) * (angle + radians(20));
+        const Vec3 reach = (arm.chest_from_hand.translation - shoulder) * (1 - bent);
+        arm.chest_from_hand.translation = shoulder + rotate(about_x(-ahead), reach);
+        arm.chest_from_hand.rotation =
+            about_x(-ahead - 0.35 * angle) * arm.chest_from_hand.rotation;
+        return arm;
+    }
+
+    // Past the end of the plan (while the step halts) the pelvis goes on as it was.
+    Vec3 extended(double t) const {
+        const double T = plan_.duration_s;
+        if (t <= T) {
+            return plan_.pelvis_path.at(t).position;
+        }
+        const Motion3 end = plan_.pelvis_path.at(T);
+        return end.position + end.velocity * (t - T);
+    }
+
+    void tell_phases() {
+        const double T = plan_.duration_s;
+        auto time = [](double s) { return to_time(std::fmax(s, 0)); };
+        const bool last = spec_.kind == StepKind::kLastHalf;
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            const bool transfers = side == spec_.transfer;
+            const double down = transfers ? plan_.strike_s : plan_.support_strike_s;
+            const double up = transfers ? plan_.lift_s : plan_.support_lift_s;
+            const Limb leg = leg_of(side);
+            if (transfers) {
+                add(leg, Phase::kSupport, {}, time(up));
+                add(leg, Phase::kSwing, time(up), down <= T ? time(down) : kOpenEnd);
+                if (down <= T) {
+                    add(leg, Phase::kSupport, time(down), kOpenEnd);
+                }
+            } else {
+                add(leg, Phase::kSwing, {}, time(down));
+                add(leg, Phase::kSupport, time(down), up <= T ? time(up) : kOpenEnd);
+                if (up <= T && !last) {
+                    add(leg, Phase::kSwing, time(up), kOpenEnd);
+                }
+            }
+            if (up >= 0 && up <= T) {
+                events.push_back({time(up), "foot_off", leg});
+            }
+            if (down > 0 && down <= T) {
+                events.push_back({time(down), "foot_strike", leg});
+            }
+        }
+        std::stable_sort(events.begin(), events.end(),
+                         [](const MovementEvent& a, const MovementEvent& b) {
+                             return a.after_start < b.after_start;
+                         });
+    }
+    void add(Limb limb, Phase phase, SimTime begin, SimTime end) {
+        if (begin < end) {
+            phases.push_back({limb, phase, begin, end});
+        }
+    }
+
+    const figure::Figure& figure_;
+    StepSpec spec_;
+    StepPlan plan_;
+    InertialBody body_, pelvis_turn_;
+    std::array<InertialArm, 2> arms_;
+    std::array<InertialOffset, 2> swivel_;
+};
+
+}  // namespace
+
+MovementPtr make_step(const MotionContext& context, const StepSpec& spec) {
+    PUP_REQUIRE(spec.stroke_m >= 0 && spec.duration_s > 0);
+    return std::make_shared<Step>(context, spec);
+}
+
+}  // namespace puppetri::motion

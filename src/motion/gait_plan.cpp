@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+// Order of planning: footprints and times from the formula; the pelvis's way ahead and aside; the
+// feet, which need nothing else; last the pelvis's height, which has to suit the legs that stand.
+#include "gait_plan.h"
+
+#include "puppetri/base/elementary.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/idle.h"
+#include "travel.h"
+
+namespace puppetri::motion {
+namespace {
+
+// The shape of a walk. Angles after the averages of slow adult gait in Winter (2009, chapter 3) and
+// Perry (1992), except that the heel rises less before the foot leaves the floor, so that a
+// standing knee stays below 25 degrees.
+constexpr double kStrikePitch = radians(16), kLiftPitch = radians(-27), kSwingPitch = radians(-46);
+constexpr double kFlatAfterStrike = 0.17,
+                 kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
+constexpr double kYaw = radians(5), kList = radians(2.5);
+constexpr double kSway = 0.0125;        // of the height, to either side
+constexpr double kBoundaryLead = 0.05;  // of the stroke
+constexpr double kClearance_m = 0.022;
+constexpr double kLongest = 0.9968,
+                 kShortest = 0.9785;  // reach of a standing leg: knee 9.2 and 23.8 degrees
+
+class Planner {
+ public:
+    Planner(const MotionContext& context, const StepSpec& spec)
+        : f_(context.figure),
+          context_(context),
+          spec_(spec),
+          support_side_(other(spec.transfer)),
+          swing_(foot_state(f_, context, spec.transfer)),
+          support_(foot_state(f_, context, support_side_)) {
+        plan_.duration_s = step_duration_s(spec);
+        if (context.duration.ticks > 0) {
+            plan_.duration_s = context.duration.seconds();
+        }
+        whole_ = spec.kind == StepKind::kWhole;
+        first_ = spec.kind == StepKind::kFirstHalf;
+        last_ = spec.kind == StepKind::kLastHalf;
+        n_ = whole_ ? plan_.duration_s : 2 * plan_.duration_s;
+        x_ = spec.stroke_m;
+        side_ = support_side_ == Side::kLeft ? 1 : -1;
+    }
+
+    StepPlan plan() {
+        plan_times();
+        plan_frame();
+        plan_travel_of_pelvis();
+        plan_turns();
+        plan_support_foot();
+        plan_swing_foot();
+        plan_height_of_pelvis();
+        return std::move(plan_);
+    }
+
+ private:
+    void plan_times() {
+        const double T = plan_.duration_s;
+        half_ = (clamp(spec_.duty_factor, 0.2, 0.9) - 0.5) *
+                n_;  // half of the double support; negative: of the flight
+        plan_.lift_s = first_ ? std::fmin(0.048 * n_, std::fmax(half_, 0) * 0.5) : half_;
+        plan_.strike_s = last_ ? T - std::fmin(0.048 * n_, std::fmax(half_, 0) * 0.5) : T - half_;
+        plan_.support_strike_s = first_ ? -1 : -half_;
+        plan_.support_lift_s = last_ ? T + 10 : T + half_;
+    }
+
+    void plan_frame() {
+        plan_.heading_rad = support_.yaw.position;
+        floor_y_ = floor_under(f_, context_.now);
+        support_print_ = footprint_of(f_, support_side_, support_);
+        Vec3 origin = support_print_.ankle_flat;
+        if (!support_.planted) {
+            // It lands half a stroke ahead of the pelvis, half a stance beside it.
+            const Vec3 p = context_.now.pelvis.position_world;
+            origin = p + rotate(about_y(plan_.heading_rad),
+                                {side_ * f_.stance_half_width_m, 0, x_ / 2 - ahead_of_ankles()});
+            origin.y = floor_y_ + f_.ankle_height_m;
+            support_print_ = footprint_at(f_, support_side_, origin, plan_.heading_rad);
+        }
+        origin.y = floor_y_;
+        plan_.world_from_path = {about_y(plan_.heading_rad), origin};
+        path_from_world_ = inverse(plan_.world_from_path);
+    }
+
+    double ahead_of_ankles() const { return 0.012 * f_.height_m; }
+    Motion3 to_path(Motion3 world) const {
+        const Quat q = path_from_world_.rotation;
+        return {path_from_world_ * world.position, rotate(q, world.velocity),
+                rotate(q, world.acceleration)};
+    }
+
+    void plan_travel_of_pelvis() {
+        const double T = plan_.duration_s, speed = x_ / n_;
+        const Motion3 now =
+            to_path({context_.now.pelvis.position_world, context_.rate.pelvis_velocity_world, {}});
+        const double midline = -side_ * f_.stance_half_width_m;
+        Motion1 to{ahead_of_ankles(), 0, 0};
+        if (first_) {
+            to = {ahead_of_ankles() + x_ / 2, 1.55 * speed, 0};
+        } else if (whole_) {
+            to = {ahead_of_ankles() + x_ / 2 + kBoundaryLead * x_, 1.28 * speed, 0};
+        }
+        plan_.pelvis_path.z = plan_travel({now.position.z, now.velocity.z, 0}, to, T);
+        // Over the support foot in the middle, back over the midline at the border, on the way to
+        // the other foot.
+        const double sway = kSway * f_.height_m;
+        const double rate = sway * kPi / n_;
+        Motion1 aside_now{now.position.x, now.velocity.x, 0};
+        Motion1 aside_end{midline, last_ ? 0 : -side_ * rate, 0};
+        const double peak = midline + side_ * sway * (whole_ ? 1 : 0.8);
+        plan_.pelvis_path.x = minimum_jerk({0, aside_now}, {{T / 2, peak}}, {T, aside_end});
+    }
+
+    void plan_turns() {
+        // The hip of the foot that goes ahead goes ahead; that of the free leg drops. Right
+        // transfer (side_ = 1): yaw from negative to positive.
+        const double T = plan_.duration_s, bend = (kPi / n_) * (kPi / n_);
+        const Motion1 before{first_ ? 0 : -side_ * kYaw, 0, first_ ? 0 : side_ * kYaw * bend};
+        const Motion1 after{last_ ? 0 : side_ * kYaw, 0, last_ ? 0 : -side_ * kYaw * bend};
+        plan_.pelvis_yaw = minimum_jerk({0, before}, {}, {T, after});
+        const double rate = side_ * kList * kPi / n_;
+        plan_.pelvis_list = minimum_jerk({0, {0, first_ ? 0 : rate, 0}},
+                                         {{T / 2, side_ * kList * (whole_ ? 1 : 0.8)}},
+                                         {T, {0, last_ ? 0 : -rate, 0}});
+        const double swing =
+            clamp(radians(36) * x_ / (0.41 * f_.height_m), radians(5), radians(30)) * 0.75;
+        const Motion1 arm0{first_ ? 0 : -side_ * swing, 0, first_ ? 0 : side_ * swing * bend};
+        const Motion1 arm1{last_ ? 0 : side_ * swing, 0, last_ ? 0 : -side_ * swing * bend};
+        plan_.arm_swing = minimum_jerk({0, arm0}, {}, {T, arm1});
+        plan_.lean_rad = first_ ? radians(4) : last_ ? radians(-3) : 0;
+    }
+
+    bool rolls() const { return half_ > 0.02 * n_; }
+    double lift_pitch() const {
+        return rolls() || half_ < 0 ? kLiftPitch * std::fmin(1, std::fabs(half_) / (0.08 * n_)) : 0;
+    }
+    double strike_pitch() const {
+        return rolls() ? kStrikePitch * std::fmin(1, half_ / (0.08 * n_)) : 0;
+    }
+
+    // Heel off to toe off of the foot that supports in this step, ending at `lift`; its state at
+    // the border is where the next step takes it up.
+    Quintic heel_rise(double length_s) const {
+        return Quintic::between({}, {lift_pitch(), 1.9 * lift_pitch() / length_s, 0}, length_s);
+    }
+
+    void plan_support_foot() {
+        FootPath& foot = plan_.feet[index_of(support_side_)];
+        foot.set_body(f_, support_side_);
+        std::vector<Key1> keys;
+        double flat_s = 0;
+        if (support_.planted) {
+            foot.stand(0, support_print_);
+            flat_s = settle(support_.pitch,
+                            std::fmax(kFlatAfterStrike * n_ - std::fmax(half_, 0), 0.06), keys);
+        } else {
+            flat_s =
+                land(foot, support_side_, support_, support_print_, plan_.support_strike_s, keys);
+        }
+        if (!last_) {
+            const double begin = std::fmax(plan_.duration_s - kHeelRise * n_, flat_s + 0.02);
+            const double length_s = plan_.support_lift_s - begin;
+            if (length_s > 0.03) {
+                const Quintic rise = heel_rise(length_s);
+                keys.push_back({begin, {}});
+                keys.push_back({plan_.support_lift_s, rise.at(length_s)});
+            }
+        }
+        foot.set_pitch(Curve1(std::move(keys)));
+    }
+
+    // Keys that bring a planted foot flat; the remaining way is a quartic that ends with velocity
+    // and acceleration 0.
+    double settle(Motion1 pitch, double time_s, std::vector<Key1>& keys) {
+        if (std::fabs(pitch.position) < 1e-9 && std::fabs(pitch.velocity) < 1e-6) {
+            keys.push_back({0, {}});
+            return 0;
+        }
+        // pitch(t) = (R - t)^3 (c0 + c1 (R - t)): from position and velocity; the acceleration
+        // follows.
+        const double R = time_s;
+        const double c1 = -(pitch.velocity * R + 3 * pitch.position) / (R * R * R * R);
+        const double c0 = pitch.position / (R * R * R) - c1 * R;
+        pitch.acceleration = 6 * R * c0 + 12 * R * R * c1;
+        keys.push_back({0, pitch});
+        keys.push_back({R, {}});
+        return R;
+    }
+
+    // A foot in the air comes down on the print at strike_s.
+    double land(FootPath& foot, Side side, const FootState& now, const Footprint& print,
+                double strike_s, std::vector<Key1>& keys) {
+        const double t = std::fmax(strike_s, 0.05);
+        keys.push_back({0, now.pitch});
+        keys.push_back({t, {}});
+        const Motion3 from = to_path(now.ankle), to = to_path(ankle_on_print(f_, side, print, {}));
+        auto curve = [t](Motion1 a, Motion1 b) { return minimum_jerk({0, a}, {}, {t, b}); };
+        const Curve3 ankle{curve({from.position.x, from.velocity.x, 0}, {to.position.x, 0, 0}),
+                           curve({from.position.y, from.velocity.y, 0}, {to.position.y, 0, 0}),
+                           curve({from.position.z, from.velocity.z, 0}, {to.position.z, 0, 0})};
+        foot.swing(0, plan_.world_from_path, ankle, curve(now.yaw, {print.yaw_rad, 0, 0}),
+                   curve(now.toe_bend, {}));
+        foot.stand(t, print);
+        return t;
+    }
+
+    void plan_swing_foot() {
+        const Side side = spec_.transfer;
+        FootPath& foot = plan_.feet[index_of(side)];
+        foot.set_body(f_, side);
+        const Vec3 landing_path{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m,
+                                last_ ? 0 : x_};
+        const Footprint landing =
+            footprint_at(f_, side, plan_.world_from_path * landing_path, plan_.heading_rad);
+        const bool planted = swing_.planted;
+        const double lift = planted ? std::fmax(plan_.lift_s, 0) : 0,
+                     strike = std::fmax(plan_.strike_s, lift + 0.1);
+        const double d = strike - lift;
+        // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
+        // that all is smooth.
+        const double lift_to = first_ ? 0.35 * lift_pitch() : lift_pitch();
+        const double strike_to = last_ ? 0.25 * strike_pitch() : strike_pitch();
+        const double flat = last_ ? plan_.duration_s : strike + kFlatAfterStrike * n_;
+        Motion1 start = swing_.pitch;
+        if (planted && !first_ && rolls()) {
+            const double length_s = kHeelRise * n_ + half_;
+            start.acceleration = heel_rise(length_s).at(length_s - half_).acceleration;
+        }
+        std::vector<Waypoint1> way;
+        if (lift > 0.01) {
+            way.push_back({lift, lift_to});
+        }
+        const double peak = rolls() || half_ < 0 ? kSwingPitch : radians(-24);
+        way.push_back({lift + 0.24 * d, first_ ? 0.8 * peak : peak});
+        way.push_back({lift + 0.62 * d, 0.12 * peak});
+        Key1 end{strike, {}};
+        if (strike_to > 0) {
+            way.push_back({strike, strike_to});
+            end.t_s = flat;
+        }
+        const Curve1 pitch = minimum_jerk({0, start}, way, end);
+        foot.set_pitch(pitch);
+
+        Motion3 from = to_path(swing_.ankle);
+        Motion1 bend = swing_.toe_bend;
+        if (planted) {
+            const Footprint print = footprint_of(f_, side, swing_);
+            foot.stand(0, print);
+            const Motion1 at_lift = pitch.at(lift);
+            from = to_path(ankle_on_print(f_, side, print, at_lift));
+            bend = at_lift.position < 0
+                       ? Motion1{-at_lift.position, -at_lift.velocity, -at_lift.acceleration}
+                       : Motion1{};
+        }
+        const Motion3 to = to_path(ankle_on_print(f_, side, landing, pitch.at(strike)));
+        const Curve1 toes =
+            minimum_jerk({lift, bend}, {{lift + 0.4 * d, radians(6)}}, {strike, {}});
+        auto height_at = [&](double part, double clearance) {
+            const double t = lift + part * d;
+            return Waypoint1{t, clearance + drop_below_ankle(f_, side, pitch.at(t).position,
+                                                             toes.at(t).position)};
+        };
+        const Curve3 ankle{
+            minimum_jerk({lift, {from.position.x, from.velocity.x, from.acceleration.x}}, {},
+                         {strike, {to.position.x, to.velocity.x, to.acceleration.x}}),
+            minimum_jerk({lift, {from.position.y, from.velocity.y, from.acceleration.y}},
+                         {height_at(0.25, kClearance_m), height_at(0.5, kClearance_m),
+                          height_at(0.78, 0.8 * kClearance_m)},
+                         {strike, {to.position.y, to.velocity.y, to.acceleration.y}}),
+            minimum_jerk({lift, {from.position.z, from.velocity.z, from.acceleration.z}}, {},
+                         {strike, {to.position.z, to.velocity.z, to.acceleration.z}})};
+        foot.swing(lift, plan_.world_from_path, ankle,
+                   minimum_jerk({lift, {swing_.yaw.position, planted ? 0 : swing_.yaw.velocity, 0}},
+                                {}, {strike, {landing.yaw_rad, 0, 0}}),
+                   toes);
+        foot.stand(strike, landing);
+    }
+
+    // The band at t: standing legs between their shortest and longest reach, whatever the height of
+    // the pelvis.
+    HeightBand band(double t) const {
+        HeightBand b{t, -1e9, 1e9};
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            const bool transfers = side == spec_.transfer;
+            const bool stands = transfers
+                                    ? t <= plan_.lift_s || t >= plan_.strike_s
+                                    : t >= plan_.support_strike_s && t <= plan_.support_lift_s;
+            const LegControl leg = plan_.feet[index_of(side)].at(t);
+            const Vec3 ankle = path_from_world_ * leg.ankle_world;
+            const Quat turn = about_y(plan_.pelvis_yaw.at(t).position) *
+                              about_z(plan_.pelvis_list.at(t).position);
+            const Vec3 hip = rotate(turn, f_.legs[index_of(side)].hip_pelvis);
+            const double dx = plan_.pelvis_path.x.at(t).position + hip.x - ankle.x;
+            const double dz = plan_.pelvis_path.z.at(t).position + hip.z - ankle.z;
+            auto height = [&](double reach) {
+                const double r = reach * f_.leg_m;
+                return ankle.y - hip.y + std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01));
+            };
+            b.highest = std::fmin(b.highest, height(stands ? kLongest : 0.992));
+            if (stands) {
+                b.lowest = std::fmax(b.lowest, height(kShortest));
+            }
+        }
+        return b;
+    }
+
+    void plan_height_of_pelvis() {
+        const double T = plan_.duration_s;
+        const Motion3 now =
+            to_path({context_.now.pelvis.position_world, context_.rate.pelvis_velocity_world, {}});
+        const double curvature = 0.010 * f_.height_m * (2 * kPi / n_) * (2 * kPi / n_) * 0.5;
+        HeightPlan height;
+        height.from = {now.position.y, now.velocity.y, first_ ? 0 : curvature};
+        height.duration_s = T;
+        height.end_is_free = !last_;
+        height.to = {0, 0, last_ ? 0 : curvature};
+        if (last_) {
+            Controls feet;
+            for (const Side side : {Side::kLeft, Side::kRight}) {
+                feet.legs[index_of(side)] = plan_.feet[index_of(side)].at(T);
+            }
+            height.to.position = (path_from_world_ * pelvis_over_feet(f_, feet).position_world).y;
+        }
+        constexpr int kBands = 20;
+        for (int i = 1; i <= kBands; ++i) {
+            height.bands.push_back(band(T * i / kBands));
+        }
+        plan_.pelvis_path.y = plan_height(height);
+    }
+
+    const figure::Figure& f_;
+    const MotionContext& context_;
+    const StepSpec& spec_;
+    Side support_side_;
+    FootState swing_, support_;
+    bool whole_ = false, first_ = false, last_ = false;
+    double n_ = 0, x_ = 0, half_ = 0, side_ = 1, floor_y_ = 0;
+    Footprint support_print_;
+    Transform path_from_world_;
+    StepPlan plan_;
+};
+
+}  // namespace
+
+StepPlan plan_step(const MotionContext& context, const StepSpec& spec) {
+    return Planner(context, spec).plan();
+}
+
+}  // namespace puppetri::motion

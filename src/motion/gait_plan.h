@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The plan of one step, made once when the step is prepared: times, footprints, and curves in the
+// frame of the path.
+#pragma once
+#include "foot_path.h"
+#include "puppetri/motion/gait.h"
+
+namespace puppetri::motion {
+
+// Path space: the support foot's ankle, put on the floor, is the origin; +Z is the way ahead, +Y
+// up, +X left.
+struct StepPlan {
+    double duration_s = 0;
+    Transform world_from_path;
+    double heading_rad = 0;
+    // When feet leave and meet the floor, seconds after the start; beyond [0, duration] where that
+    // happens in a neighbour step. Of the transfer leg, and of the support leg (below duty factor
+    // 0.5 it flies too).
+    double lift_s = 0, strike_s = 0;
+    double support_strike_s = 0, support_lift_s = 0;
+    std::array<FootPath, 2> feet;    // by Side
+    Curve3 pelvis_path;              // the joint `hips`
+    Curve1 pelvis_yaw, pelvis_list;  // relative to the heading; list is about the way ahead
+    Curve1 arm_swing;  // of the left shoulder, ahead is positive; the right arm's is the negative
+    double lean_rad = 0;  // largest forward lean of the trunk during this step beyond the usual
+};
+
+StepPlan plan_step(const MotionContext& context, const StepSpec& spec);
+
+}  // namespace puppetri::motion

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Plans of the pelvis: how far ahead (with little acceleration) and how high (so that the legs that
+// stand are neither stretched nor bent too much).
+#pragma once
+#include <vector>
+
+#include "puppetri/math/quintic.h"
+
+namespace puppetri::motion {
+
+// From one position and velocity to another in duration_s. Among all ways the one whose largest
+// acceleration is small and which changes it gently: minimizes the sum of a^6 over evenly spaced
+// knots, between them the acceleration is linear. (Least squares of a alone gives the cubic Hermite
+// curve, whose peak is a third higher.) Cost    a few microseconds.
+Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s);
+
+// What a height has to keep to at one instant.
+struct HeightBand {
+    double t_s = 0;
+    double lowest = 0, highest = 0;
+};
+struct HeightPlan {
+    Motion1 from;  // at 0
+    double duration_s = 0;
+    bool end_is_free = false;  // otherwise `to` is met
+    Motion1 to;                // velocity and acceleration at the end count in any case
+    std::vector<HeightBand> bands;
+};
+// A smooth curve through the bands, as far as there is one: otherwise the sum of squares by which
+// it leaves them is least, leaving upwards (a leg too short) counting much more than downwards.
+Curve1 plan_height(const HeightPlan& plan);
+
+}  // namespace puppetri::motion
