@@ -109,6 +109,9 @@ std::string_view Builder::text(const Token& token) const {
 
 std::string Builder::quoted(const Token& token) {
     std::string_view inside = text(token);
+    if (inside.size() < 2 || inside.back() != inside.front()) {
+        return {};  // without an end, which the lexer has reported
+    }
     inside.remove_prefix(1);
     inside.remove_suffix(1);
     std::string out;

@@ -123,11 +123,58 @@ std::string_view symbol(Op op) {
     return "";
 }
 
-bool compound(const Expr& e) {
-    return e.kind == ExprKind::kBinary || e.kind == ExprKind::kConditional ||
-           e.kind == ExprKind::kRange || (e.kind == ExprKind::kUnary && e.op == Op::kNot);
+// How tightly an expression holds together, as the grammar has it.
+int precedence(const Expr& e) {
+    switch (e.kind) {
+        case ExprKind::kConditional:
+            return 0;
+        case ExprKind::kRange:
+            return 7;
+        case ExprKind::kUnary:
+            return e.op == Op::kNot ? 5 : 10;
+        case ExprKind::kBinary:
+            break;
+        default:
+            return 12;
+    }
+    switch (e.op) {
+        case Op::kImplies:
+            return 1;
+        case Op::kOr:
+            return 2;
+        case Op::kUntil:
+        case Op::kWeakUntil:
+        case Op::kRelease:
+            return 3;
+        case Op::kAnd:
+            return 4;
+        case Op::kAdd:
+        case Op::kSubtract:
+            return 8;
+        case Op::kMultiply:
+        case Op::kDivide:
+        case Op::kDiv:
+        case Op::kMod:
+            return 9;
+        case Op::kPower:
+            return 11;
+        default:
+            return 6;
+    }
 }
-std::string part(const Expr& e) { return compound(e) ? "(" + to_text(e) + ")" : to_text(e); }
+// A part of an expression, in parentheses unless it binds more tightly than what is around it.
+std::string part(const Expr& e, int around) {
+    return precedence(e) > around ? to_text(e) : "(" + to_text(e) + ")";
+}
+// Whether (a o b) o c needs no parentheses, or a o (b o c) needs none. Sums of many are one node:
+// (a + b) + c is not a + b + c.
+bool left_associative(Op op) {
+    return op == Op::kSubtract || op == Op::kDivide || op == Op::kDiv || op == Op::kMod;
+}
+bool right_associative(Op op) {
+    return op == Op::kImplies || op == Op::kUntil || op == Op::kWeakUntil || op == Op::kRelease ||
+           op == Op::kPower;
+}
 
 std::string joined(const std::vector<Argument>& args, std::string_view between) {
     std::string out;
@@ -184,16 +231,18 @@ std::string to_text(const Expr& e) {
             out = "(" + joined(e.args, ", ") + ")";
             break;
         case ExprKind::kUnary:
-            return std::string(symbol(e.op)) + part(e.args[0].value);
+            return std::string(symbol(e.op)) + part(e.args[0].value, precedence(e) - 1);
         case ExprKind::kConditional:
-            return part(e.args[0].value) + " ? " + part(e.args[1].value) + " : " +
-                   part(e.args[2].value);
+            return part(e.args[0].value, 0) + " ? " + part(e.args[1].value, -1) + " : " +
+                   part(e.args[2].value, -1);
         case ExprKind::kRange:
-            return part(e.args[0].value) + " .. " + part(e.args[1].value);
+            return part(e.args[0].value, 7) + " .. " + part(e.args[1].value, 7);
         case ExprKind::kBinary:
             for (std::size_t i = 0; i < e.args.size(); ++i) {
+                const bool free =
+                    (i == 0 && left_associative(e.op)) || (i == 1 && right_associative(e.op));
                 out += i > 0 ? symbol(e.op) : "";
-                out += part(e.args[i].value);
+                out += part(e.args[i].value, precedence(e) - (free ? 1 : 0));
             }
             return out;
     }

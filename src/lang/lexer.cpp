@@ -228,6 +228,7 @@ struct action<open_text> {
                            "", name ? "this quoted name has no end" : "this text has no end",
                            name ? "put ' after the name, on the same line"
                                 : "put \" where the text ends, on the same line");
+        lexer.add(name ? Kind::kQuotedName : Kind::kString, in.begin(), in.end());
     }
 };
 

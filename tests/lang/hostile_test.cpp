@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// Every truncation of each file and many single-byte corruptions give a tree or defects, never a
+// crash; what parses is formatted and parses again. Run it under the sanitizers too.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "lang/dump.h"
+#include "puppetri/lang/format.h"
+
+using namespace puppetri;
+using namespace puppetri::lang;
+
+namespace {
+
+std::vector<std::string> files() {
+    std::vector<std::string> out;
+    for (const char* folder : {PUP_SOURCE_DIR "/tests/corpus", PUP_SOURCE_DIR "/examples"}) {
+        if (!std::filesystem::exists(folder)) {
+            continue;
+        }
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+            if (entry.path().extension() == ".pup") {
+                std::ifstream in(entry.path(), std::ios::binary);
+                std::stringstream buffer;
+                buffer << in.rdbuf();
+                out.push_back(buffer.str());
+            }
+        }
+    }
+    return out;
+}
+
+// Everything that reads positions or trees, on a text that may be anything.
+void survive(const std::string& text) {
+    const Parsed result = parse(text, "hostile.pup");
+    for (const Diagnostic& d : result.diagnostics) {
+        REQUIRE(!d.message.empty());
+        REQUIRE(!d.code.empty());
+        REQUIRE(d.where.length >= 1);
+        REQUIRE(d.where.line <= result.file.line_starts.size());
+    }
+    if (result.diagnostics.empty()) {
+        const Checked<std::string> once = format(text, "hostile.pup");
+        REQUIRE(once.has_value());
+        const Parsed again = parse(once.value(), "hostile.pup");
+        REQUIRE(again.diagnostics.empty());
+        REQUIRE_MESSAGE(testing::Dump::of(again.file) == testing::Dump::of(result.file), text);
+        REQUIRE_MESSAGE(format(once.value(), "hostile.pup").value() == once.value(), text);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every truncation is survived [hostile]") {
+    for (const std::string& text : files()) {
+        const std::size_t step = text.size() > 4000 ? 7 : 1;
+        for (std::size_t n = 0; n < text.size(); n += step) {
+            survive(text.substr(0, n));
+        }
+    }
+}
+
+TEST_CASE("single-byte corruptions are survived [hostile]") {
+    std::mt19937 random(3);
+    const std::string bytes =
+        "{}()[]\"'#\\:=->.,?*/^ \n\t\0\r\x80\xFF"
+        "a1";
+    for (const std::string& text : files()) {
+        for (int round = 0; round < 1500 && !text.empty(); ++round) {
+            std::string broken = text;
+            const std::size_t at = random() % text.size();
+            const char byte = bytes[random() % bytes.size()];
+            switch (random() % 3) {
+                case 0:
+                    broken[at] = byte;
+                    break;
+                case 1:
+                    broken.erase(at, 1);
+                    break;
+                default:
+                    broken.insert(at, 1, byte);
+            }
+            survive(broken);
+        }
+    }
+}
+
+TEST_CASE("tokens in any order are survived [hostile]") {
+    std::mt19937 random(5);
+    const std::vector<std::string> words = {
+        "place",  "net", "{",     "}",     "(",   ")",    "a",      "->", ":",    "\n",     "takes",
+        "2",      "s",   "rule",  "never", "for", "in",   "..",     "+",  "-",    "*",      "/",
+        "^",      "m",   "\"x\"", "'q'",   "#",   "# c",  "[",      "]",  ",",    "=",      ":=",
+        "?",      "not", "and",   "until", "end", "cast", "public", "on", "with", "unless", "ready",
+        "tokens", "if",  "only",  "leads", "to",  "\\\n", "."};
+    for (int round = 0; round < 20000; ++round) {
+        std::string text;
+        const std::size_t n = random() % 40;
+        for (std::size_t i = 0; i < n; ++i) {
+            text += words[random() % words.size()];
+            text += random() % 3 == 0 ? "" : " ";
+        }
+        survive(text);
+    }
+}
+
+TEST_CASE("noise is survived [hostile]") {
+    std::mt19937 random(9);
+    for (int round = 0; round < 2000; ++round) {
+        std::string text(random() % 300, ' ');
+        for (char& c : text) {
+            c = static_cast<char>(random() % (round % 2 == 0 ? 128 : 256));
+        }
+        survive(text);
+    }
+}
