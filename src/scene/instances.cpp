@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: MIT
+// The tree of instances: every `use` and every `runs` makes one, every `for` is unrolled, and every statement gets its
+// full path and its entry in the draft. Statements are completed later, when all names are known.
+#include "elaboration.h"
+#include "puppetri/lang/types.h"
+
+namespace puppetri::scene {
+namespace {
+
+// Nets that instantiate each other twice grow like powers of two.
+constexpr std::size_t kMaxInstances = 200'000;
+constexpr std::int64_t kMaxLoop = 1'000'000;
+constexpr std::size_t kMaxElements = 8'000'000;
+
+std::string text_of_index(const Term& term) {
+    if (const Number* n = std::get_if<Number>(&term); n != nullptr && n->is_integer()) {
+        return std::to_string(n->exact.numerator);
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string Elaboration::key_of(const lang::Name& name, const Scope& scope) {
+    std::string key = name.text;
+    for (const lang::Expr& index : name.index) {
+        std::string text;
+        // An index may be a loop variable over names: `seat[p]`.
+        if (index.kind == lang::ExprKind::kPath && index.path.steps.size() == 1) {
+            for (const LoopBinding* b = scope.loop; b != nullptr && text.empty(); b = b->up) {
+                if (b->name == index.path.steps[0].text) {
+                    text = b->text;
+                }
+            }
+        }
+        if (text.empty()) {
+            const Term value = evaluate(index, scope);
+            text = text_of_index(value);
+            if (text.empty()) {
+                wrong(index.span, "a whole number", value);
+                text = "?";
+            }
+        }
+        key += "[" + text + "]";
+    }
+    return key;
+}
+
+std::string Elaboration::path_of(const lang::Name& name, const Scope& scope) {
+    const std::string& up = instances_[scope.instance].path;
+    const std::string key = key_of(name, scope);
+    return up.empty() ? key : up + "." + key;
+}
+
+bool Elaboration::add_member(const Scope& scope, const lang::Name& name, Member member) {
+    Instance& instance = instances_[scope.instance];
+    std::string key = key_of(name, scope);
+    if (instance.net != nullptr) {
+        for (const lang::Parameter& p : instance.net->parameters) {
+            if (p.name.text == key) {
+                error("name-twice", name.span, key + " is a parameter of this net already",
+                      "choose another name");
+                return false;
+            }
+        }
+    }
+    const std::string shown = key;
+    if (!instance.members.emplace(std::move(key), member).second) {
+        error("name-twice", name.span, "there is already something named " + shown + " here",
+              scope.loop != nullptr && name.index.empty()
+                  ? "in a `for`, give the name an index: " + name.text + "[" + scope.loop->name + "]"
+                  : "choose another name");
+        return false;
+    }
+    return true;
+}
+
+std::optional<Declaration> Elaboration::find_declaration(const lang::Path& path, std::uint32_t file,
+                                                         std::string_view kind) {
+    const auto& visible = library_.visible[file];
+    if (path.steps.size() == 1) {
+        const auto found = visible.find(path.steps[0].text);
+        if (found != visible.end()) {
+            const Declaration& d = found->second;
+            const bool fits = kind == "net"    ? d.net != nullptr
+                              : kind == "type" ? d.net == nullptr
+                                               : d.token_type != nullptr;
+            const bool missing = d.net == nullptr && d.enumeration == nullptr && d.token_type == nullptr;
+            if (missing) {
+                return std::nullopt;
+            }
+            if (fits) {
+                return d;
+            }
+        }
+    }
+    std::vector<std::string> known;
+    for (const auto& [name, d] : visible) {
+        if (kind == "net" ? d.net != nullptr : d.token_type != nullptr) {
+            known.push_back(name);
+        }
+    }
+    unknown(path.span, kind, lang::to_text(path), known);
+    return std::nullopt;
+}
+
+std::uint32_t Elaboration::make_instance(const Declaration& net, std::string path, lang::Span where, Scope scope,
+                                         const std::vector<lang::Argument>& arguments, net::PlaceIndex refines) {
+    for (std::uint32_t i = scope.instance; i != kNoInstance; i = instances_[i].up) {
+        if (instances_[i].net == net.net) {
+            std::string ring = net.net->name.text;
+            for (std::uint32_t k = scope.instance; k != i; k = instances_[k].up) {
+                ring = instances_[k].net->name.text + " contains " + ring;
+            }
+            error("module-cycle", where, "net " + net.net->name.text + " contains itself: " + net.net->name.text +
+                                             " contains " + ring,
+                  "remove one of these uses; a net that goes on for ever is a loop of transitions");
+            return kNoInstance;
+        }
+    }
+    if (instances_.size() >= kMaxInstances) {
+        error("net-too-large", where, "more than " + std::to_string(kMaxInstances) + " instances of nets",
+              "use fewer, or smaller ranges of `for`");
+        return kNoInstance;
+    }
+    used_.insert(key(net.net->span));
+    const auto number = static_cast<std::uint32_t>(instances_.size());
+    Instance& made = instances_.emplace_back();
+    made.net = net.net;
+    made.body = &net.net->body;
+    made.file = net.file;
+    made.path = std::move(path);
+    made.up = scope.instance;
+    made.refines = refines;
+    made.where = where;
+    made.argument_scope = scope;
+    match_arguments(made, arguments);
+    to_expand_.push_back(number);
+    return number;
+}
+
+void Elaboration::match_arguments(Instance& instance, const std::vector<lang::Argument>& arguments) {
+    const std::vector<lang::Parameter>& parameters = instance.net->parameters;
+    instance.arguments.assign(parameters.size(), nullptr);
+    instance.values.assign(parameters.size(), {Instance::Bound::kNo, Nothing{}});
+    const std::string net = "net " + instance.net->name.text;
+    std::vector<bool> told(parameters.size(), false);
+    std::size_t position = 0;
+    bool named = false;
+    for (const lang::Argument& a : arguments) {
+        std::size_t i = 0;
+        if (a.name.text.empty()) {
+            if (named) {
+                error("argument-order", a.value.span, "an argument by position after one by name",
+                      "name it too: `NAME: value`");
+                continue;
+            }
+            i = position++;
+            if (i >= parameters.size()) {
+                error("too-many-arguments", a.value.span,
+                      net + " takes " + std::to_string(parameters.size()) + " arguments", "remove this one");
+                continue;
+            }
+        } else {
+            named = true;
+            std::vector<std::string> known;
+            for (const lang::Parameter& p : parameters) {
+                known.push_back(p.name.text);
+            }
+            while (i < parameters.size() && parameters[i].name.text != a.name.text) {
+                ++i;
+            }
+            if (i == parameters.size()) {
+                unknown(a.name.span, "parameter of " + net, a.name.text, known);
+                continue;
+            }
+        }
+        if (instance.arguments[i] != nullptr) {
+            error("repeated-argument", a.value.span, parameters[i].name.text + " is given twice", "remove one");
+            continue;
+        }
+        instance.arguments[i] = &a.value;
+    }
+    if (instance.stand_in) {
+        return;
+    }
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        if (instance.arguments[i] == nullptr && !parameters[i].default_value) {
+            error("missing-argument", instance.where, net + " needs an argument " + parameters[i].name.text,
+                  "give it: `" + parameters[i].name.text + ": ...`");
+            instance.values[i].first = Instance::Bound::kYes;  // Nothing
+        }
+    }
+}
+
+void Elaboration::expand(std::uint32_t number) {
+    expand_body(*instances_[number].body, {.instance = number});
+}
+
+void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
+    if (draft().places.size() + draft().transitions.size() + rules_.size() > kMaxElements) {
+        error("net-too-large", statement_, "more than " + std::to_string(kMaxElements) + " elements",
+              "use smaller ranges of `for`");
+        return;
+    }
+    for (const lang::Enumeration& e : body.enumerations) {
+        About about(*this, "enum " + e.name.text, e.span);
+        add_member(scope, e.name, {MemberKind::kEnumeration, enumeration_index(e), true});
+    }
+    for (const lang::Data& d : body.data) {
+        const std::string path = path_of(d.name, scope);
+        About about(*this, "data " + path, d.span);
+        const auto index = static_cast<std::uint32_t>(draft().data.size());
+        add_member(scope, d.name, {MemberKind::kDatum, index, d.is_public});
+        draft().data.push_back({.path = path, .caption = d.caption.text, .where = at(d.span)});
+        data_.push_back({&d, scope, path});
+    }
+    for (const lang::Event& e : body.events) {
+        const std::string path = path_of(e.name, scope);
+        About about(*this, "event " + path, e.span);
+        const auto index = static_cast<std::uint32_t>(draft().events.size());
+        add_member(scope, e.name, {MemberKind::kEvent, index, e.is_public});
+        draft().events.push_back(
+            {.path = path, .caption = e.caption.text, .where = at(e.span), .consumed = e.is_consumed});
+        events_.push_back({&e, scope, path});
+    }
+    for (const lang::Place& p : body.places) {
+        const std::string path = path_of(p.name, scope);
+        About about(*this, "place " + path, p.span);
+        const auto index = static_cast<std::uint32_t>(draft().places.size());
+        add_member(scope, p.name, {MemberKind::kPlace, index, p.is_public});
+        draft().places.push_back({.path = path, .caption = p.caption.text, .where = at(p.span)});
+        PlaceElement& element = places_.emplace_back();
+        element.node = &p;
+        element.scope = scope;
+        element.path = path;
+        if (p.runs) {
+            const auto net = find_declaration(p.runs.path, p.span.file, "net");
+            if (net) {
+                element.runs = make_instance(*net, path, p.runs.span, scope, p.runs.args, {index});
+            }
+        }
+    }
+    for (const lang::Transition& t : body.transitions) {
+        const std::string path = path_of(t.name, scope);
+        About about(*this, "transition " + path, t.span);
+        const auto index = static_cast<std::uint32_t>(draft().transitions.size());
+        add_member(scope, t.name, {MemberKind::kTransition, index, t.is_public});
+        draft().transitions.push_back({.path = path, .caption = t.caption.text, .where = at(t.span)});
+        transitions_.push_back({&t, scope, path});
+    }
+    for (const lang::State& s : body.states) {
+        const std::string path = path_of(s.name, scope);
+        About about(*this, "state " + path, s.span);
+        const auto index = static_cast<std::uint32_t>(states_.size());
+        add_member(scope, s.name, {MemberKind::kState, index, s.is_public});
+        StateElement& element = states_.emplace_back();
+        element.node = &s;
+        element.scope = scope;
+        element.path = path;
+    }
+    for (const lang::Use& u : body.uses) {
+        const std::string path = path_of(u.name, scope);
+        About about(*this, "use of " + lang::to_text(u.net), u.span);
+        const auto net = find_declaration(u.net, u.span.file, "net");
+        const std::uint32_t made =
+            net ? make_instance(*net, path, u.span, scope, u.args, {}) : kNoInstance;
+        add_member(scope, u.name, {MemberKind::kInstance, made, true});
+    }
+    for (const lang::Rule& r : body.rules) {
+        Scope seeing = scope;
+        seeing.sees_all = true;
+        std::string path = path_of(r.name, scope);
+        if (r.name.index.empty()) {
+            std::string suffix;
+            for (const LoopBinding* b = scope.loop; b != nullptr; b = b->up) {
+                suffix = "." + b->text + suffix;
+            }
+            path += suffix;
+        }
+        rules_.push_back({&r, seeing, path});
+    }
+    for (const lang::End& e : body.ends) {
+        ends_.push_back({&e, scope, instances_[scope.instance].path});
+    }
+    for (const lang::EventFile& e : body.event_files) {
+        event_files_.emplace_back(&e, scope);
+    }
+    for (const lang::Block& b : body.blocks) {
+        Scope seeing = scope;
+        seeing.sees_all = true;
+        blocks_.emplace_back(&b, seeing);
+    }
+    for (const lang::For& loop : body.loops) {
+        to_unroll_.emplace_back(&loop, scope);
+    }
+}
+
+void Elaboration::unroll(const lang::For& loop, const Scope& scope) {
+    About about(*this, "for " + loop.variable.text, loop.span);
+    const auto once = [&](Term value, std::string text) {
+        const LoopBinding& binding = loop_bindings_.emplace_back(
+            LoopBinding{loop.variable.text, std::move(value), std::move(text), scope.loop});
+        Scope inner = scope;
+        inner.loop = &binding;
+        expand_body(loop.body, inner);
+    };
+    Scope seeing = scope;  // the loop may be over anything that a rule in it may speak of
+    seeing.sees_all = true;
+    const lang::Expr& domain = loop.domain;
+    if (domain.kind == lang::ExprKind::kRange) {
+        const auto low = constant_integer(domain.args[0].value, seeing, "the range of a `for`");
+        const auto high = constant_integer(domain.args[1].value, seeing, "the range of a `for`");
+        if (!low || !high) {
+            return;
+        }
+        if (*high - *low >= kMaxLoop) {
+            error("net-too-large", domain.span, "a `for` of more than " + std::to_string(kMaxLoop) + " turns",
+                  "use a smaller range");
+            return;
+        }
+        for (std::int64_t i = *low; i <= *high; ++i) {
+            once(Number::whole(i), std::to_string(i));
+        }
+        return;
+    }
+    std::vector<const lang::Expr*> items;
+    if (domain.kind == lang::ExprKind::kTuple || domain.kind == lang::ExprKind::kList) {
+        for (const lang::Argument& a : domain.args) {
+            items.push_back(&a.value);
+        }
+    } else {
+        items.push_back(&domain);
+    }
+    for (const lang::Expr* item : items) {
+        Term value = evaluate(*item, seeing);
+        if (const auto* all = std::get_if<EnumerationTerm>(&value)) {
+            const net::EnumDraft e = draft().enums[all->enumeration];
+            for (std::size_t i = 0; i < e.values.size(); ++i) {
+                once(EnumTerm{all->enumeration, static_cast<std::int64_t>(i)}, e.values[i]);
+            }
+            continue;
+        }
+        once(std::move(value), lang::to_text(*item));
+    }
+}
+
+std::uint32_t Elaboration::enumeration_index(const lang::Enumeration& e) {
+    const auto [found, made] =
+        enumerations_.emplace(key(e.span), static_cast<std::uint32_t>(draft().enums.size()));
+    if (made) {
+        net::EnumDraft& out = draft().enums.emplace_back();
+        out.name = e.name.text;
+        for (const lang::Name& value : e.values) {
+            out.values.push_back(value.text);
+        }
+    }
+    return found->second;
+}
+
+void Elaboration::instantiate() {
+    std::size_t expanded = 0, unrolled = 0;
+    while (expanded < to_expand_.size() || unrolled < to_unroll_.size()) {
+        if (expanded < to_expand_.size()) {
+            expand(to_expand_[expanded++]);
+        } else {
+            const auto [loop, scope] = to_unroll_[unrolled++];
+            unroll(*loop, scope);
+        }
+    }
+}
+
+}  // namespace puppetri::scene

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "library.h"
+
+#include "puppetri/lang/parse.h"
+#include "puppetri/lang/types.h"
+
+namespace puppetri::scene {
+namespace {
+
+using lang::unknown_name;
+
+class Loader {
+   public:
+    explicit Loader(FileSource& source) : source_(source) {}
+
+    Library load(const std::string& path) {
+        if (const auto text = source_.read(path); text) {
+            open(path, *text);
+        } else {
+            library_.diagnostics.push_back({.code = "cannot-read",
+                                            .where = {.file = path},
+                                            .element = "file " + path,
+                                            .message = text.error().message,
+                                            .remedy = "look at the path and the rights of the file"});
+            library_.readable = false;
+            return std::move(library_);
+        }
+        // Imports are read breadth first; files_ grows while we go.
+        for (std::uint32_t i = 0; i < library_.files.size(); ++i) {
+            read_imports(i);
+            read_event_files(i, library_.files[i].body);
+        }
+        for (std::uint32_t i = 0; i < library_.files.size(); ++i) {
+            declare_imports(i);
+        }
+        return std::move(library_);
+    }
+
+   private:
+    std::uint32_t open(const std::string& path, const std::string& text) {
+        const auto number = static_cast<std::uint32_t>(library_.files.size());
+        lang::Parsed parsed = lang::parse(text, path, number);
+        library_.readable = library_.readable && !has_errors(parsed.diagnostics);
+        for (Diagnostic& d : parsed.diagnostics) {
+            library_.diagnostics.push_back(std::move(d));
+        }
+        library_.files.push_back(std::move(parsed.file));
+        library_.texts.emplace_back();
+        numbers_[path] = number;
+        std::map<std::string, Declaration> names;
+        const lang::Body& body = library_.files.back().body;
+        for (const lang::Net& net : body.nets) {
+            declare(names, net.name, {.file = number, .net = &net});
+        }
+        for (const lang::Enumeration& e : body.enumerations) {
+            declare(names, e.name, {.file = number, .enumeration = &e});
+        }
+        for (const lang::TokenType& t : body.token_types) {
+            declare(names, t.name, {.file = number, .token_type = &t});
+        }
+        library_.visible.push_back(std::move(names));
+        return number;
+    }
+
+    void declare(std::map<std::string, Declaration>& names, const lang::Name& name, const Declaration& d) {
+        if (!names.emplace(name.text, d).second) {
+            library_.diagnostics.push_back({.code = "name-twice",
+                                            .where = library_.where(name.span),
+                                            .element = name.text,
+                                            .message = "this file already has a " + name.text,
+                                            .remedy = "choose another name"});
+        }
+    }
+
+    void read_imports(std::uint32_t file) {
+        imported_.emplace_back();
+        for (const lang::Import& import : library_.files[file].imports) {
+            const std::string path = source_.resolve(library_.files[file].filename, import.path);
+            if (const auto known = numbers_.find(path); known != numbers_.end()) {
+                imported_.back().push_back(known->second);
+                continue;
+            }
+            const auto text = source_.read(path);
+            if (!text) {
+                library_.diagnostics.push_back({.code = "cannot-read",
+                                                .where = library_.where(import.path_span),
+                                                .element = "import of " + path,
+                                                .message = text.error().message,
+                                                .remedy = "the path is relative to this file; look at its spelling"});
+                imported_.back().push_back(kMissing);
+                continue;
+            }
+            imported_.back().push_back(open(path, *text));
+        }
+    }
+
+    void read_event_files(std::uint32_t file, const lang::Body& body) {
+        for (const lang::EventFile& events : body.event_files) {
+            const std::string path = source_.resolve(library_.files[file].filename, events.path);
+            const auto text = source_.read(path);
+            if (!text) {
+                library_.diagnostics.push_back({.code = "cannot-read",
+                                                .where = library_.where(events.span),
+                                                .element = "events from " + path,
+                                                .message = text.error().message,
+                                                .remedy = "the path is relative to this file; look at its spelling"});
+                continue;
+            }
+            library_.texts[file][events.path] = *text;
+        }
+    }
+
+    void declare_imports(std::uint32_t file) {
+        const std::vector<lang::Import>& imports = library_.files[file].imports;
+        for (std::size_t i = 0; i < imports.size(); ++i) {
+            const std::uint32_t from = imported_[file][i];
+            for (const lang::Name& name : imports[i].names) {
+                if (from == kMissing) {
+                    declare(library_.visible[file], name, {});
+                    continue;
+                }
+                const Declaration* found = nullptr;
+                std::vector<std::string> known;
+                for (const auto& [text, d] : library_.visible[from]) {
+                    if (d.file == from) {
+                        known.push_back(text);
+                        found = text == name.text ? &d : found;
+                    }
+                }
+                if (found == nullptr) {
+                    library_.diagnostics.push_back(unknown_name(library_.where(name.span), "net", name.text, known,
+                                                                "import from " + imports[i].path));
+                    declare(library_.visible[file], name, {});
+                    continue;
+                }
+                declare(library_.visible[file], name, *found);
+            }
+        }
+    }
+
+    static constexpr std::uint32_t kMissing = ~std::uint32_t{0};
+    FileSource& source_;
+    Library library_;
+    std::map<std::string, std::uint32_t> numbers_;
+    std::vector<std::vector<std::uint32_t>> imported_;  // by file and import: the file's number
+};
+
+}  // namespace
+
+Library load_library(FileSource& source, const std::string& path) { return Loader(source).load(path); }
+
+}  // namespace puppetri::scene
