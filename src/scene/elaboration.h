@@ -199,16 +199,23 @@ class Elaboration {
     // A formula of branching or linear time: calls AG EF AX ..., G F X, and until.
     net::Formula temporal_formula(const lang::Expr& e, const Scope& scope, bool linear);
 
-    // cast.cpp, cameras.cpp
-    void add_camera(const lang::Block& block, const Scope& scope);
-    std::optional<Term> add_cast_member(const lang::CastMember& member, std::uint32_t file);
+    // cast.cpp -- actors, props, sets, cameras
+    Term add_cast_member(const lang::CastMember& member);
     void fill_figure(const lang::CastMember& member, const Scope& scope, stage::Actor& actor);
     void fill_prop(const lang::CastMember& member, const Scope& scope, stage::Prop& prop);
     void fill_set(const lang::CastMember& member, const Scope& scope, stage::Set& set);
-    std::optional<Vec3> point_of(const lang::Property& property, const Scope& scope);
-    std::optional<double> quantity_of(const lang::Property& property, const Scope& scope, lang::Dimension dimension);
-    std::optional<std::string> word_of(const lang::Property& property);
+    Term holder_actor(const lang::Expr& e, const Scope& scope);
+    void add_camera(const lang::Block& block);
+    void keep_in_view(const lang::Expr& e, const Scope& scope, Camera& camera);
+    std::optional<Vec3> point_of(const lang::Expr& value, const Scope& scope);
+    std::optional<double> quantity_of(const lang::Property& property, const Scope& scope, lang::Dimension dimension,
+                                      const char* form);
+    std::optional<std::string> palette_of(const lang::Property& property);
+    bool has_values(const lang::Property& property, std::size_t count, const char* form);
     void unknown_property(const lang::Property& property, const std::vector<std::string>& known);
+    void complete_cast();
+    void check_cast();
+    void complete_blocks();
 
     // data.cpp, places.cpp, durations.cpp, actions.cpp, transitions.cpp, events.cpp, rules.cpp -- the passes
     void complete_data();
@@ -242,6 +249,7 @@ class Elaboration {
     void name_elements(const lang::Rule& node, const Scope& scope, net::Rule& out);
     net::Formula moves_of(motion::ActorIndex actor);
     void complete_ends();
+    void complete();
     void read_header();
 
     const Library& library_;
@@ -265,7 +273,8 @@ class Elaboration {
     std::vector<Element<lang::End>> ends_;  // one per formula list
     std::vector<std::pair<const lang::EventFile*, Scope>> event_files_;
     std::vector<std::pair<const lang::Block*, Scope>> blocks_;
-    std::map<std::pair<std::uint32_t, std::string>, std::optional<Term>> cast_;  // by file and name, added on demand
+    std::map<std::pair<std::uint32_t, std::string>, Term> cast_;  // by file and name, added on demand
+    std::map<std::string, lang::Span> cast_where_;
     std::map<NodeKey, std::uint32_t> enumerations_;
 };
 

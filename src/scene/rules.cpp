@@ -94,7 +94,7 @@ void Elaboration::complete_rule(const Element<lang::Rule>& rule) {
         {lang::RuleKind::kQuasiLive, net::RuleKind::kQuasiLive},
         {lang::RuleKind::kNobodyFreezes, net::RuleKind::kNobodyFreezes},
         {lang::RuleKind::kCtl, net::RuleKind::kFormula},
-        {lang::RuleKind::kLtl, net::RuleKind::kLtl},
+        {lang::RuleKind::kLtl, net::RuleKind::kFormula},
     };
     const lang::Rule& node = *rule.node;
     net::Rule out{.path = rule.path, .caption = node.caption.text, .where = at(node.span)};
