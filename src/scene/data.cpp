@@ -67,17 +67,18 @@ void Elaboration::complete_events() {
                   "choose a longer one");
             continue;
         }
-        if (!until) {
+        if (!node.until) {
             draft().schedule.push_back({*from, event, *every, at(node.every.span)});
             continue;
         }
+        const SimTime last = until.value_or(SimTime{});
         constexpr std::int64_t kMost = 1'000'000;
-        if ((until->ticks - from->ticks) / every->ticks >= kMost) {
+        if ((last.ticks - from->ticks) / every->ticks >= kMost) {
             error("net-too-large", node.every.span, "more than " + std::to_string(kMost) + " scheduled occurrences",
                   "leave `until` out: then it repeats for ever at no cost");
             continue;
         }
-        for (SimTime t = *from; t <= *until; t = t + *every) {
+        for (SimTime t = *from; t <= last; t = t + *every) {
             draft().schedule.push_back({t, event, std::nullopt, at(node.every.span)});
         }
     }
