@@ -7,6 +7,10 @@ namespace puppetri::cli {
 std::vector<Command> all_commands() {
     return {
         new_command(),
+        check_command(),
+        fmt_command(),
+        run_command(),
+        draw_command(),
     };
 }
 

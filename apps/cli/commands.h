@@ -8,6 +8,10 @@
 namespace puppetri::cli {
 
 Command new_command();
+Command check_command();
+Command fmt_command();
+Command run_command();
+Command draw_command();
 
 // In the order of the help.
 std::vector<Command> all_commands();

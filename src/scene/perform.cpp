@@ -9,23 +9,22 @@ namespace {
 constexpr SimTime kSlice{kTicksPerSecond / 20};  // between two questions whether to go on
 constexpr SimTime kLongest{3600 * kTicksPerSecond};
 
-double share_done(const Horizon& horizon, const run::Player& player) {
-    if (horizon.firings && *horizon.firings > 0) {
-        return static_cast<double>(player.firings()) / static_cast<double>(*horizon.firings);
+run::Limits limits_of(const Horizon& horizon) {
+    run::Limits limits;
+    limits.until = horizon.time ? *horizon.time : horizon.firings ? SimTime::never() : kLongest;
+    if (horizon.firings) {
+        limits.firings = *horizon.firings;
     }
-    if (horizon.time && horizon.time->ticks > 0) {
-        return static_cast<double>(player.now().ticks) / static_cast<double>(horizon.time->ticks);
-    }
-    return 0;
+    return limits;
 }
 
 // The end of the last movement that has an end.
 SimTime last_end(const stage::Stage& stage) {
     SimTime end{0};
     for (const stage::ScoreEntry& entry : stage.score()) {
-        const SimTime left = std::min(entry.end, entry.left);
-        if (left != SimTime::never()) {
-            end = std::max(end, left);
+        const SimTime last = std::min(entry.end, entry.left);
+        if (last != SimTime::never()) {
+            end = std::max(end, last);
         }
     }
     return end;
@@ -33,61 +32,99 @@ SimTime last_end(const stage::Stage& stage) {
 
 }  // namespace
 
-Checked<Performed> perform(const Scene& scene, const PerformOptions& options) {
-    const Horizon horizon = options.horizon.given() ? options.horizon : scene.horizon;
-    Performed out;
-    out.seed = options.seed.value_or(scene.seed);
-    stage::Stage stage(scene.play);
-    run::Player player(scene.net, {.seed = out.seed,
-                                   .host = &stage,
-                                   .sink = options.sink,
-                                   .beat = scene.beat,
-                                   .record = options.record});
-    player.schedule(options.events);
+Session::Session(const Scene& scene, const PerformOptions& options)
+    : scene_(scene),
+      options_(options),
+      horizon_(options.horizon.given() ? options.horizon : scene.horizon),
+      limits_(limits_of(horizon_)),
+      stage_(scene.play),
+      player_(scene.net, {.seed = options.seed.value_or(scene.seed),
+                          .host = &stage_,
+                          .sink = options.sink,
+                          .beat = scene.beat,
+                          .record = options.record}) {
+    player_.schedule(options.events);
+}
 
-    run::Limits limits{.until = horizon.time.value_or(kLongest)};
-    if (horizon.firings) {
-        limits.firings = *horizon.firings;
+Session::~Session() = default;
+
+void Session::schedule(const run::OutsideEvent& event) {
+    player_.schedule(std::span<const run::OutsideEvent>(&event, 1));
+}
+
+void Session::push(net::EventIndex event) { player_.push(event); }
+
+SimTime Session::now() const { return player_.now(); }
+
+double Session::share_done() const {
+    if (horizon_.firings && *horizon_.firings > 0) {
+        return static_cast<double>(player_.firings()) / static_cast<double>(*horizon_.firings);
     }
+    if (horizon_.time && horizon_.time->ticks > 0) {
+        return static_cast<double>(player_.now().ticks) / static_cast<double>(horizon_.time->ticks);
+    }
+    return 0;
+}
+
+bool Session::slice(SimTime until) {
+    run::Limits limits = limits_;
+    limits.until = std::min(limits_.until, until);
+    stop_ = player_.run(limits);
+    return stop_ == run::Stop::kLimit && player_.now() < limits_.until && player_.firings() < limits_.firings;
+}
+
+bool Session::advance_to(SimTime at) {
+    slice(at);
+    // At rest now; an event from outside may wake it.
+    return stop_ != run::Stop::kFault && player_.now() < limits_.until && player_.firings() < limits_.firings;
+}
+
+void Session::run() {
     // In slices, so that the asker is heard; slices do not change what happens.
-    while (true) {
-        run::Limits slice = limits;
-        slice.until = std::min(limits.until, player.now() + kSlice);
-        out.stop = player.run(slice);
-        const bool all = out.stop != run::Stop::kLimit || player.now() >= limits.until ||
-                         player.firings() >= limits.firings;
-        if (all) {
-            break;
-        }
-        if (options.go_on != nullptr && !options.go_on(options.context, share_done(horizon, player))) {
-            out.interrupted = true;
-            break;
+    while (slice(player_.now() + kSlice)) {
+        if (options_.go_on != nullptr && !options_.go_on(options_.context, share_done())) {
+            interrupted_ = true;
+            return;
         }
     }
-    if (!horizon.given() && out.stop == run::Stop::kLimit && !out.interrupted) {
-        return Unexpected(Diagnostics{{.code = "no-horizon",
-                                       .where = {.file = scene.path},
-                                       .element = "scene " + scene.title,
-                                       .message = "the net goes on for ever and the scene does not say when to stop",
-                                       .remedy = "write `until 40 s` or `until frame 960` in the header, or give --for"}});
+}
+
+Checked<Performed> Session::finish() {
+    if (!horizon_.given() && stop_ == run::Stop::kLimit && !interrupted_) {
+        return Unexpected(
+            Diagnostics{{.code = "no-horizon",
+                         .where = {.file = scene_.path},
+                         .element = "scene " + scene_.title,
+                         .message = "the net goes on for ever and the scene does not say when to stop",
+                         .remedy = "write `until 40 s` or `until frame 960` in the header, or give --for"}});
     }
-    out.end = player.now();
-    if (out.stop == run::Stop::kDead || out.stop == run::Stop::kFinal) {
+    Performed out;
+    out.seed = options_.seed.value_or(scene_.seed);
+    out.stop = stop_;
+    out.interrupted = interrupted_;
+    out.end = player_.now();
+    if (stop_ == run::Stop::kDead || stop_ == run::Stop::kFinal) {
         // At rest: the horizon, if it is a time, else the end of the last movement.
-        out.end = horizon.time ? *horizon.time : std::max(player.now(), last_end(stage));
+        out.end = horizon_.time && !interrupted_ ? *horizon_.time : std::max(player_.now(), last_end(stage_));
     }
-    if (out.stop == run::Stop::kFault) {
-        out.fault = player.fault();
+    if (stop_ == run::Stop::kFault) {
+        out.fault = player_.fault();
     }
-    out.firings = player.firings();
-    out.log_hash = player.log_hash();
-    out.notes = player.notes();
-    out.notes.insert(out.notes.end(), stage.diagnostics().begin(), stage.diagnostics().end());
-    if (options.record) {
-        out.recording = player.recording();
+    out.firings = player_.firings();
+    out.log_hash = player_.log_hash();
+    out.notes = player_.notes();
+    out.notes.insert(out.notes.end(), stage_.diagnostics().begin(), stage_.diagnostics().end());
+    if (options_.record) {
+        out.recording = player_.recording();
     }
-    out.performance = stage.finish(out.end);
+    out.performance = stage_.finish(out.end);
     return out;
+}
+
+Checked<Performed> perform(const Scene& scene, const PerformOptions& options) {
+    Session session(scene, options);
+    session.run();
+    return session.finish();
 }
 
 }  // namespace puppetri::scene

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "puppetri/run/player.h"
@@ -13,11 +14,11 @@
 namespace puppetri::scene {
 
 struct PerformOptions {
-    std::optional<std::uint64_t> seed;          // instead of the scene's
-    Horizon horizon;                            // instead of the scene's, where given
-    std::vector<run::OutsideEvent> events;      // beside those that the scene schedules
-    run::LogSink* sink = nullptr;               // hears of every firing
-    bool record = false;                        // keep the outside events in Performed::recording
+    std::optional<std::uint64_t> seed;      // instead of the scene's
+    Horizon horizon;                        // instead of the scene's, where given
+    std::vector<run::OutsideEvent> events;  // beside those that the scene schedules
+    run::LogSink* sink = nullptr;           // hears of every firing
+    bool record = false;                    // keep the outside events in Performed::recording
     // Asked about 20 times a second of model time, with the share done; answering false ends the run cleanly.
     bool (*go_on)(void* context, double share_done) = nullptr;
     void* context = nullptr;
@@ -26,14 +27,51 @@ struct PerformOptions {
 struct Performed {
     std::uint64_t seed = 0;
     run::Stop stop = run::Stop::kLimit;
-    bool interrupted = false;            // go_on said no
-    SimTime end;                         // of the take
+    bool interrupted = false;  // go_on said no
+    SimTime end;               // of the take
     std::uint64_t firings = 0;
     std::uint64_t log_hash = 0;
-    std::optional<Diagnostic> fault;     // with kFault: why; the performance reaches to there
-    Diagnostics notes;                   // of the player and of the stage
+    std::optional<Diagnostic> fault;  // with kFault: why; the performance reaches to there
+    Diagnostics notes;                // of the player and of the stage
     std::vector<run::OutsideEvent> recording;
     std::unique_ptr<const stage::Performance> performance;
+};
+
+// A run under way, for those who feed it while it goes on. The scene and what the options point to must outlive it.
+class Session {
+   public:
+    Session(const Scene& scene, const PerformOptions& options);
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    // An event at a time (now, if that has passed), or in the next tick.
+    void schedule(const run::OutsideEvent& event);
+    void push(net::EventIndex event);
+
+    // Plays up to this instant, never beyond the horizon. Gives whether the run can go on.
+    bool advance_to(SimTime at);
+    // Plays to the horizon, or until nothing can happen any more.
+    void run();
+    void interrupt() { interrupted_ = true; }
+    SimTime now() const;
+
+    // Ends the run and hands over everything; the session is empty afterwards.
+    // Fails   "no-horizon": see perform.
+    Checked<Performed> finish();
+
+   private:
+    bool slice(SimTime until);
+    double share_done() const;
+
+    const Scene& scene_;
+    PerformOptions options_;
+    Horizon horizon_;
+    run::Limits limits_;
+    stage::Stage stage_;
+    run::Player player_;
+    run::Stop stop_ = run::Stop::kLimit;
+    bool interrupted_ = false;
 };
 
 // Plays from time 0 to the horizon, or until nothing can happen any more. A time that was given as horizon is the end

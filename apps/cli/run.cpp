@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// `puppetri run SCENE`: performs a scene and tells what happened: log, score, hash, a chart.
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "horizon.h"
+#include "interrupt.h"
+#include "live_input.h"
+#include "logs.h"
+#include "puppetri/io/atomic_file.h"
+#include "puppetri/io/disk_files.h"
+#include "puppetri/scene/events.h"
+#include "puppetri/scene/perform.h"
+#include "terminal.h"
+
+namespace puppetri::cli {
+namespace {
+
+bool go_on(void* progress, double share_done) {
+    static_cast<Progress*>(progress)->show(share_done);
+    return !interrupted();
+}
+
+// Everything that the command line says about a run, checked.
+Result<scene::PerformOptions, int> options_of(const Arguments& arguments, const scene::Scene& scene) {
+    scene::PerformOptions options;
+    if (arguments.given("--seed")) {
+        const std::int64_t seed = arguments.integer("--seed");
+        if (seed < 0) {
+            say_error("a seed is 0 or more");
+            return Unexpected<int>(kBadInput);
+        }
+        options.seed = static_cast<std::uint64_t>(seed);
+    }
+    if (arguments.given("--for")) {
+        const auto horizon = parse_horizon(arguments.text("--for"), scene.frame_rate);
+        if (!horizon) {
+            say_error("--for: " + horizon.error());
+            return Unexpected<int>(kBadInput);
+        }
+        options.horizon = *horizon;
+    }
+    const std::string events = arguments.text("--events");
+    if (!events.empty() && events != "-") {
+        const auto text = io::DiskFiles().read(events);
+        if (!text) {
+            say_error(events + ": " + text.error().message);
+            return Unexpected<int>(kBadInput);
+        }
+        scene::EventList list = scene::parse_event_list(*text, events, scene::event_names(scene.net));
+        say_diagnostics(list.diagnostics);
+        if (has_errors(list.diagnostics)) {
+            return Unexpected<int>(kBadInput);
+        }
+        options.events = std::move(list.events);
+        if (list.seed && !options.seed) {
+            options.seed = list.seed;
+        }
+    }
+    options.record = arguments.given("--record");
+    return options;
+}
+
+bool write_or_say(const std::string& path, const std::string& text) {
+    if (path == "-") {
+        std::fwrite(text.data(), 1, text.size(), stdout);
+        return true;
+    }
+    if (auto written = io::write_file(path, text); !written) {
+        say_diagnostics(written.error());
+        return false;
+    }
+    return true;
+}
+
+int run(const Arguments& arguments) {
+    io::DiskFiles files;
+    const auto scene = scene::load(files, arguments.text("scene"));
+    if (!scene) {
+        say_diagnostics(scene.error());
+        return kBadInput;
+    }
+    say_diagnostics(scene->notes);
+    auto options = options_of(arguments, *scene);
+    if (!options) {
+        return options.error();
+    }
+    std::optional<CsvLog> log;
+    if (arguments.given("--log")) {
+        const std::string path = arguments.text("--log");
+        auto opened = CsvLog::open(path == "-" ? "/dev/stdout" : path, scene->net);
+        if (!opened) {
+            say_diagnostics(opened.error());
+            return kFailed;
+        }
+        log.emplace(std::move(*opened));
+        options->sink = &*log;
+    }
+    std::optional<Checked<scene::Performed>> performed;
+    {
+        Progress progress("running");
+        options->go_on = go_on;
+        options->context = &progress;
+        scene::Session session(*scene, *options);
+        if (arguments.text("--events") == "-") {
+            play_with_stdin(session, scene->net);
+        } else {
+            session.run();
+        }
+        performed.emplace(session.finish());
+    }
+    if (!*performed) {
+        say_diagnostics(performed->error());
+        return kBadInput;
+    }
+    const scene::Performed& result = **performed;
+    bool good = true;
+    if (log) {
+        if (auto written = log->commit(); !written) {
+            say_diagnostics(written.error());
+            good = false;
+        }
+    }
+    if (arguments.given("--score")) {
+        good = write_or_say(arguments.text("--score"), score_csv(*result.performance)) && good;
+    }
+    if (arguments.given("--record")) {
+        good = write_or_say(arguments.text("--record"),
+                            scene::write_event_list(result.recording, result.seed, scene::event_names(scene->net))) &&
+               good;
+    }
+    say_diagnostics(result.notes);
+    if (result.fault) {
+        say_diagnostics({*result.fault});
+    }
+    if (arguments.given("--json")) {
+        std::puts(run_json(*scene, result).c_str());
+    } else if (arguments.given("--hash")) {
+        std::puts(hash_text_of(result.log_hash).c_str());
+    } else {
+        say(run_summary(*scene, result));
+    }
+    return good && !result.fault ? kFine : kFailed;
+}
+
+}  // namespace
+
+Command run_command() {
+    return {"run",
+            "perform a scene: log, score, statistics",
+            "Plays the scene from time 0 to its horizon (`until` in the file, or --for) and shows who moved when. The\n"
+            "same file, seed and events give the same log everywhere; --hash prints its fingerprint.\n\n"
+            "Log columns:   tick,seconds,transition\n"
+            "Score columns: start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,movement,prop,"
+            "instance\n"
+            "One tick is 1/705600000 s. Events are lines `2.5 s NAME`; on stdin (--events -) the run follows real\n"
+            "time and also takes `now NAME`.\n\n"
+            "Examples:\n"
+            "  puppetri run ball.pup                           a chart of the score\n"
+            "  puppetri run ball.pup --for 20s --seed 3        also 480f (frames), 500x (firings)\n"
+            "  puppetri run ball.pup --log log.csv --score -   - is stdout\n"
+            "  puppetri run show.pup --events - --record session.txt\n"
+            "  puppetri run show.pup --events session.txt --hash",
+            {{"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
+             {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
+             {"--for", Value::kText, "HOW LONG", "a time (40s), frames (960f) or firings (1000x), instead of the scene's", false},
+             {"--log", Value::kText, "FILE", "write each firing as CSV", false},
+             {"--score", Value::kText, "FILE", "write each movement as CSV", false},
+             {"--events", Value::kText, "FILE", "outside events from a list or a recorded session; - for stdin", false},
+             {"--record", Value::kText, "FILE", "write the outside events of this session, to be replayed", false},
+             {"--hash", Value::kFlag, "", "print the fingerprint of the log alone", false},
+             {"--json", Value::kFlag, "", "the summary as JSON on stdout", false}},
+            run};
+}
+
+}  // namespace puppetri::cli
