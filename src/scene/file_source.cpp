@@ -5,7 +5,7 @@
 
 namespace puppetri::scene {
 
-std::string FileSource::resolve(const std::string& importer, const std::string& written) {
+std::string path_beside(const std::string& importer, const std::string& written) {
     const std::size_t slash = importer.rfind('/');
     const bool absolute = !written.empty() && written[0] == '/';
     const std::string whole =

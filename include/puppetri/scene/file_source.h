@@ -14,6 +14,9 @@ struct FileProblem {
     std::string message;  // "there is no such file"
 };
 
+// "a/b/walk.pup" for importer "a/b/scene.pup" and "walk.pup"; `.` and `..` are removed as far as the text allows.
+std::string path_beside(const std::string& importer, const std::string& written);
+
 class FileSource {
  public:
     virtual ~FileSource() = default;
@@ -22,8 +25,10 @@ class FileSource {
     virtual Result<std::string, FileProblem> read(const std::string& path) = 0;
 
     // The path of `import ... from "written"` in the file `importer`. One file must always get one path: files are told
-    // apart by it. Default: beside the importer, `.` and `..` removed.
-    virtual std::string resolve(const std::string& importer, const std::string& written);
+    // apart by it.
+    virtual std::string resolve(const std::string& importer, const std::string& written) {
+        return path_beside(importer, written);
+    }
 };
 
 // Files in memory, for tests and whoever has the text already.
