@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "puppetri/figure/mannequin.h"
+#include "puppetri/math/rotation.h"
 
 namespace puppetri::test {
 
@@ -46,6 +47,15 @@ class Drawing {
             line(page(foot.translation), page(foot * leg.heel_foot), colour);
             line(page(foot * leg.heel_foot), page(foot * leg.ball_foot), colour);
             line(page(toes * leg.ball_toes), page(toes * leg.toe_tip_toes), colour);
+        }
+    }
+    void ball(Vec3 centre, double radius_m, double at_x, double at_y, bool front, Vec3 origin) {
+        const Vec3 q = centre - origin;
+        const double x = at_x + (front ? q.x : q.z), y = at_y - q.y;
+        for (int i = 0; i < 24; ++i) {
+            const double a = i * kPi / 12, b = a + kPi / 12;
+            line({x + radius_m * std::cos(a), y + radius_m * std::sin(a)},
+                 {x + radius_m * std::cos(b), y + radius_m * std::sin(b)}, {40, 150, 60});
         }
     }
     void floor(double y) { line({0, y}, {w_ / scale_, y}, {170, 170, 170}); }

@@ -9,7 +9,6 @@
 #include "puppetri/base/diagnostic.h"
 #include "puppetri/motion/bound_call.h"
 #include "puppetri/motion/context.h"
-#include "puppetri/motion/flight.h"
 #include "puppetri/motion/movement.h"
 
 namespace puppetri::motion {
@@ -68,15 +67,5 @@ struct Prepared {
 // is elsewhere), ...
 Checked<Prepared> prepare(const BoundCall& call, const MotionContext& context,
                           const Surroundings& around, Diagnostics& notes);
-
-// What a receiver does from the instant a ball is thrown to it: `base` (the movement it is in,
-// begun base_age_s ago) goes on, but the hands come together so that they have the ball, exactly,
-// when its flight ends.
-MovementPtr prepare_receive(const MotionContext& context, MovementPtr base, double base_age_s,
-                            const Flight& flight, double radius_m);
-
-// Where a figure with these controls would catch a ball: before its chest, at the height of its
-// belly.
-Vec3 catching_point(const figure::Figure& figure, const Controls& controls);
 
 }  // namespace puppetri::motion

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Carrying: the ball has a place before the belly, in chest space, and sways a little around it.
+#include "arm_state.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/motion/arms.h"
+#include "puppetri/motion/grip.h"
+
+namespace puppetri::motion {
+namespace {
+
+constexpr double kBlend_s = 0.5;
+
+// A slow sway that is the same function of absolute time in every movement, so that nothing shows
+// where they join.
+Vec3 sway(double at_s) {
+    return {0.003 * sin(1.1 * at_s), 0.004 * sin(1.7 * at_s + 0.6), 0.002 * sin(0.9 * at_s + 2)};
+}
+
+class Carry final : public Movement {
+ public:
+    Carry(const MotionContext& given, const CarrySpec& spec)
+        : figure_(given.figure), radius_m_(spec.radius_m) {
+        const MotionContext context = arms_in_chest_space(given);
+        limbs = kBothArms;
+        duration = duration_of(context, spec.duration_s);
+        at_s_ = context.at.seconds();
+        rest_ = carried_ball_chest(figure_, radius_m_);
+        if (spec.held) {
+            const HeldBall ball = held_ball(context, radius_m_);
+            if (spec.stay) {
+                rest_ = ball.chest_from_ball;
+                rest_.translation = rest_.translation - sway(at_s_);
+            }
+            const double h = 1e-4;
+            offset_ = BallOffset(ball.chest_from_ball, ball.velocity_chest, ball.angular_chest,
+                                 own(0), (sway(at_s_ + h) - sway(at_s_)) * (1 / h), {}, kBlend_s);
+            Controls on_ball = context.now;
+            lay_hands(figure_, ball.chest_from_ball, radius_m_, 0, on_ball);
+            offsets_ = fading_fingers(context, on_ball, kBlend_s);
+        } else {
+            offsets_ = ArmOffsets::make(
+                context,
+                [this](double t, Controls& out) { lay_hands(figure_, own(t), radius_m_, 0, out); },
+                kBlend_s);
+        }
+    }
+
+    void sample(double t_s, Controls& out) const override {
+        lay_hands(figure_, offset_.apply(t_s, own(t_s)), radius_m_, 0, out);
+        offsets_.apply(t_s, out);
+    }
+
+ private:
+    Transform own(double t_s) const {
+        return {rest_.rotation, rest_.translation + sway(at_s_ + t_s)};
+    }
+
+    const figure::Figure& figure_;
+    double radius_m_, at_s_ = 0;
+    Transform rest_;
+    BallOffset offset_;
+    ArmOffsets offsets_;
+};
+
+}  // namespace
+
+Transform carried_ball_chest(const figure::Figure& figure, double radius_m) {
+    const double h = figure.height_m;
+    const Vec3 shoulder = shoulder_chest(figure, Side::kLeft);
+    const Vec3 place{0, shoulder.y - 0.165 * h, shoulder.z + 0.11 * h + radius_m};
+    return {about_x(easy_pitch(figure, place, radius_m)), place};
+}
+
+MovementPtr make_carry(const MotionContext& context, const CarrySpec& spec) {
+    return std::make_shared<Carry>(context, spec);
+}
+
+}  // namespace puppetri::motion

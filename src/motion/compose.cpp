@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "compose.h"
+
+#include <algorithm>
+
+#include "puppetri/base/require.h"
+
+namespace puppetri::motion {
+namespace {
+
+void sort_phases(std::vector<PhaseSpan>& phases) {
+    std::stable_sort(phases.begin(), phases.end(), [](const PhaseSpan& a, const PhaseSpan& b) {
+        return a.limb != b.limb ? a.limb < b.limb : a.begin < b.begin;
+    });
+}
+
+class SideBySide final : public Movement {
+ public:
+    SideBySide(MovementPtr main, MovementPtr arms)
+        : main_(std::move(main)), arms_(std::move(arms)) {
+        limbs = {static_cast<std::uint8_t>(main_->limbs.bits | arms_->limbs.bits)};
+        duration = main_->duration;
+        phases = main_->phases;
+        phases.insert(phases.end(), arms_->phases.begin(), arms_->phases.end());
+        sort_phases(phases);
+        events = main_->events;
+        for (const MovementEvent& e : arms_->events) {
+            if (e.after_start <= duration) {
+                events.push_back(e);
+            }
+        }
+        std::stable_sort(events.begin(), events.end(),
+                         [](const MovementEvent& a, const MovementEvent& b) {
+                             return a.after_start < b.after_start;
+                         });
+    }
+    void sample(double t_s, Controls& out) const override {
+        main_->sample(t_s, out);
+        arms_->sample(t_s, out);
+    }
+
+ private:
+    MovementPtr main_, arms_;
+};
+
+class InTurn final : public Movement {
+ public:
+    explicit InTurn(std::vector<MovementPtr> parts) : parts_(std::move(parts)) {
+        PUP_REQUIRE(!parts_.empty());
+        for (const MovementPtr& part : parts_) {
+            starts_s_.push_back(duration.seconds());
+            limbs.bits = static_cast<std::uint8_t>(limbs.bits | part->limbs.bits);
+            for (PhaseSpan span : part->phases) {
+                span.begin = span.begin + duration;
+                span.end = span.end + duration;
+                phases.push_back(span);
+            }
+            for (MovementEvent event : part->events) {
+                event.after_start = event.after_start + duration;
+                events.push_back(event);
+            }
+            duration = duration + part->duration;
+        }
+        sort_phases(phases);
+    }
+    void sample(double t_s, Controls& out) const override {
+        const auto after = std::upper_bound(starts_s_.begin() + 1, starts_s_.end(), t_s);
+        const std::size_t i = static_cast<std::size_t>(after - starts_s_.begin()) - 1;
+        parts_[i]->sample(t_s - starts_s_[i], out);
+    }
+
+ private:
+    std::vector<MovementPtr> parts_;
+    std::vector<double> starts_s_;
+};
+
+}  // namespace
+
+MovementPtr side_by_side(MovementPtr main, MovementPtr arms) {
+    return std::make_shared<SideBySide>(std::move(main), std::move(arms));
+}
+MovementPtr in_turn(std::vector<MovementPtr> parts) {
+    return std::make_shared<InTurn>(std::move(parts));
+}
+
+}  // namespace puppetri::motion

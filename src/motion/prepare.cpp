@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: MIT
+// The functions behind the table of movements.
+#include "puppetri/motion/prepare.h"
+
+#include "arguments.h"
+#include "compose.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/arms.h"
+#include "puppetri/motion/ball_game.h"
+#include "puppetri/motion/gait.h"
+#include "puppetri/motion/gaze.h"
+#include "puppetri/motion/grip.h"
+#include "puppetri/motion/idle.h"
+#include "puppetri/motion/library.h"
+#include "puppetri/motion/turn.h"
+
+namespace puppetri::motion {
+namespace {
+
+// Hands faster than this swing on about the shoulders before they do anything else.
+constexpr double kFastHand_m_s = 2.0;
+// A ball farther than this from where the hands would hold it is not caught.
+constexpr double kCatch_m = 0.02;
+
+class Preparer {
+ public:
+    Preparer(const BoundCall& call, const MovementSignature& signature,
+             const MotionContext& context, const Surroundings& around, Diagnostics& notes)
+        : call_(call),
+          signature_(signature),
+          arguments_(call, signature),
+          context_(context),
+          around_(around),
+          notes_(notes) {}
+
+    Checked<Prepared> run();
+
+ private:
+    // Whole movements.
+    void stand();
+    void step(StepKind kind, double stroke_m);
+    void walk();
+    void turn_to(double heading_rad);
+    void face();
+    void ready();
+    void throw_ball();
+    void catch_ball();
+    // Single limbs and arms alone.
+    void leg(bool support);
+    void arm_swing(double sign);
+    void reach();
+    void carry(bool stay);
+
+    StepKind half_kind(Side transfer) const;
+    LimbSet main_limbs();
+    void finish(MovementPtr main);
+    Vec3 head_of(ActorIndex actor) const;
+    Vec3 place_of(const ArgumentValue& value) const;
+    double radius(PropIndex prop) const { return around_.props[prop.value].radius_m; }
+    bool holds(PropIndex prop) const { return prop.valid() && around_.holds == prop; }
+    void note(const char* code, const char* message, const char* remedy) {
+        notes_.push_back({Severity::kWarning, code, {}, call_.movement, message, remedy});
+    }
+    void fail(const char* code, const char* message, const char* remedy) {
+        errors_.push_back({Severity::kError, code, {}, call_.movement, message, remedy});
+    }
+
+    const BoundCall& call_;
+    const MovementSignature& signature_;
+    Arguments arguments_;
+    const MotionContext& context_;
+    const Surroundings& around_;
+    Diagnostics& notes_;
+    Diagnostics errors_;
+    MovementPtr arms_;  // what the arms are left to, or null
+    Prepared result_;
+};
+
+Vec3 Preparer::head_of(ActorIndex actor) const {
+    const ActorState& a = around_.actors[actor.value];
+    return a.controls.pelvis.position_world + Vec3{0, 0.4 * a.figure->height_m, 0};
+}
+
+Vec3 Preparer::place_of(const ArgumentValue& value) const {
+    if (const auto* actor = std::get_if<ActorIndex>(&value)) {
+        return around_.actors[actor->value].controls.pelvis.position_world;
+    }
+    if (const auto* prop = std::get_if<PropIndex>(&value)) {
+        return around_.props[prop->value].position_world;
+    }
+    if (const auto* set = std::get_if<SetIndex>(&value)) {
+        return around_.sets[set->value].position_world;
+    }
+    const auto* point = std::get_if<Vec3>(&value);
+    PUP_REQUIRE(point != nullptr);
+    return *point;
+}
+
+// What the main movement drives. When the arms are left to another movement, when the hands hold
+// something, or when they are still fast from a throw, they are not its business.
+LimbSet Preparer::main_limbs() {
+    const BoundCall* nested =
+        signature_.arms_parameter.empty() ? nullptr : arguments_.nested(signature_.arms_parameter);
+    if (nested != nullptr && nested->movement != "swing") {
+        const MovementSignature* signature = find_movement(nested->movement, SubjectKind::kActor);
+        PUP_REQUIRE(signature != nullptr && signature->as_argument);
+        Preparer inner(*nested, *signature, context_, around_, notes_);
+        Checked<Prepared> prepared = inner.run();
+        if (!prepared) {
+            errors_ = std::move(prepared).error();
+            return kAllLimbs;
+        }
+        arms_ = prepared->movement;
+        result_.prop = prepared->prop;
+    } else if (around_.holds.valid()) {
+        arms_ = make_carry(context_, {.radius_m = radius(around_.holds)});
+        result_.prop = around_.holds;
+    } else if (length(context_.rate.arms[0].hand_velocity_chest) > kFastHand_m_s ||
+               length(context_.rate.arms[1].hand_velocity_chest) > kFastHand_m_s) {
+        arms_ = make_relax(context_, 1);
+    }
+    return arms_ == nullptr ? kAllLimbs : without(kAllLimbs, arms_->limbs);
+}
+
+void Preparer::finish(MovementPtr main) {
+    result_.movement = arms_ == nullptr ? std::move(main) : side_by_side(std::move(main), arms_);
+}
+
+void Preparer::stand() {
+    const LimbSet limbs = main_limbs();
+    finish(make_idle(context_, {.limbs = limbs, .duration_s = arguments_.number("lasting")}));
+}
+
+// The first half step leaves standing, with the feet side by side; the last one reaches it.
+StepKind Preparer::half_kind(Side transfer) const {
+    const LegControl& swing = context_.now.legs[index_of(transfer)];
+    const LegControl& other_leg = context_.now.legs[index_of(other(transfer))];
+    const Vec3 ahead = rotate(about_y(heading_of(context_.now.pelvis.rotation_world)), {0, 0, 1});
+    const double behind = dot(other_leg.ankle_world - swing.ankle_world, ahead);
+    return std::fabs(behind) < 0.1 ? StepKind::kFirstHalf : StepKind::kLastHalf;
+}
+
+void Preparer::step(StepKind kind, double stroke_m) {
+    const LimbSet limbs = main_limbs();
+    finish(make_step(context_, {.transfer = arguments_.side("side"),
+                                .kind = kind,
+                                .stroke_m = stroke_m,
+                                .duty_factor = arguments_.number("duty"),
+                                .limbs = limbs}));
+}
+
+// Moves the context to the end of a movement that starts from it: the start of the next.
+void advance_over(MotionContext& context, const Movement& movement) {
+    constexpr double kMoment_s = 1e-4;
+    const double end_s = movement.duration.seconds();
+    Controls earlier = context.now;
+    movement.sample(std::fmax(end_s - kMoment_s, 0), earlier);
+    movement.sample(end_s, context.now);
+    context.rate = rate_between(earlier, context.now, kMoment_s);
+    context.at = context.at + movement.duration;
+}
+
+void Preparer::walk() {
+    const int steps = static_cast<int>(clamp(arguments_.number("steps"), 1, 10000));
+    const LimbSet limbs = main_limbs();
+    StepSpec spec{.transfer = arguments_.side("side"),
+                  .stroke_m = arguments_.number("stroke"),
+                  .duty_factor = arguments_.number("duty"),
+                  .limbs = limbs};
+    if (context_.duration.ticks > 0) {
+        spec.duration_s = context_.duration.seconds() / steps;
+    }
+    // k steps are k + 1 movements: a half one, k - 1 whole ones, a half one.
+    std::vector<MovementPtr> parts;
+    MotionContext now = context_;
+    SimTime gone;
+    for (int i = 0; i <= steps; ++i) {
+        spec.kind = i == 0       ? StepKind::kFirstHalf
+                    : i == steps ? StepKind::kLastHalf
+                                 : StepKind::kWhole;
+        now.duration = {-1};
+        if (context_.duration.ticks > 0) {
+            const double share = i == steps ? 1.0 : (i + 0.5) / steps;
+            const SimTime end{
+                static_cast<std::int64_t>(share * static_cast<double>(context_.duration.ticks))};
+            now.duration = (i == steps ? context_.duration : end) - gone;
+            gone = gone + now.duration;
+        }
+        parts.push_back(make_step(now, spec));
+        advance_over(now, *parts.back());
+        spec.transfer = other(spec.transfer);
+    }
+    finish(in_turn(std::move(parts)));
+}
+
+void Preparer::turn_to(double heading_rad) {
+    const LimbSet limbs = main_limbs();
+    const double by = turn_between(heading_of(context_.now.pelvis.rotation_world), heading_rad);
+    finish(make_turn(context_, {.heading_rad = heading_rad,
+                                .duration_s = std::fmax(turn_duration_s(std::fabs(by)), 0.2),
+                                .limbs = limbs}));
+}
+
+void Preparer::face() {
+    const ArgumentValue* toward = arguments_.find("toward");
+    PUP_REQUIRE(toward != nullptr);
+    if (const double* heading = std::get_if<double>(toward)) {
+        turn_to(*heading);
+    } else if (const auto* set = std::get_if<SetIndex>(toward)) {
+        turn_to(around_.sets[set->value].direction_rad);
+    } else {
+        if (const auto* actor = std::get_if<ActorIndex>(toward)) {
+            result_.gaze = {.kind = GazeKind::kActor, .actor = *actor};
+        } else if (const auto* prop = std::get_if<PropIndex>(toward)) {
+            result_.gaze = {.kind = GazeKind::kProp, .prop = *prop};
+        } else {
+            result_.gaze = {.kind = GazeKind::kPoint, .point_world = place_of(*toward)};
+        }
+        turn_to(heading_to(context_.now, place_of(*toward)));
+    }
+}
+
+void Preparer::ready() {
+    const PropIndex ball = result_.prop = arguments_.prop("ball");
+    const double heading = heading_to(context_.now, place_of(*arguments_.find("from")));
+    const double by = turn_between(heading_of(context_.now.pelvis.rotation_world), heading);
+    result_.gaze = {.kind = GazeKind::kProp, .prop = ball};
+    if (around_.holds.valid()) {
+        note("hands-full", "the hands that shall be ready hold a prop already",
+             "throw it first, or face the other with `arms: carry(...)`");
+        turn_to(heading);
+        return;
+    }
+    Ready made =
+        make_ready(context_, {.radius_m = radius(ball),
+                              .heading_rad = heading,
+                              .duration_s = std::fmax(turn_duration_s(std::fabs(by)) + 0.1, 0.4)});
+    result_.movement = std::move(made.movement);
+    result_.catches_at_world = made.catches_at_world;
+}
+
+void Preparer::throw_ball() {
+    const PropIndex ball = result_.prop = arguments_.prop("ball");
+    const ArgumentValue* to = arguments_.find("to");
+    PUP_REQUIRE(to != nullptr);
+    Vec3 target = place_of(*to);
+    if (const auto* actor = std::get_if<ActorIndex>(to)) {
+        const ActorState& other_actor = around_.actors[actor->value];
+        target = other_actor.catches_at_world.value_or(
+            catching_point(*other_actor.figure, other_actor.controls));
+        result_.gaze = {.kind = GazeKind::kActor, .actor = *actor};
+    }
+    result_.releases_prop = holds(ball);
+    if (!result_.releases_prop) {
+        note("not-held", "it throws what its hands do not hold",
+             "let it catch or carry the prop first");
+    }
+    result_.movement = make_throw(context_, {.radius_m = radius(ball), .target_world = target});
+}
+
+void Preparer::catch_ball() {
+    const PropIndex ball = result_.prop = arguments_.prop("ball");
+    result_.gaze = {.kind = GazeKind::kProp, .prop = ball};
+    if (!holds(ball)) {
+        const Vec3 hands = world_from_chest(context_.figure, context_.now) *
+                           held_ball(context_, radius(ball)).chest_from_ball.translation;
+        const double off = length(hands - around_.props[ball.value].position_world);
+        if (around_.holds.valid()) {
+            fail("hands-full", "its hands hold another prop", "throw that first");
+        } else if (off > kCatch_m) {
+            fail("out-of-reach", "the ball is not between its hands when it shall catch it",
+                 "let it be ready before the ball is thrown, and catch at the instant the flight "
+                 "ends");
+        }
+        result_.takes_prop = errors_.empty();
+    }
+    result_.movement = make_catch(context_, {.radius_m = radius(ball)});
+}
+
+void Preparer::leg(bool support) {
+    const bool left = call_.subject.limb == Limb::kLeftLeg;
+    const Side me = left ? Side::kLeft : Side::kRight;
+    const Side transfer = support ? other(me) : me;
+    const bool half = arguments_.flag("half");
+    const double stroke = arguments_.number("stroke");
+    result_.movement = make_step(
+        context_, {.transfer = transfer,
+                   .kind = half ? half_kind(transfer) : StepKind::kWhole,
+                   .stroke_m = half ? 2 * stroke : stroke,
+                   .duty_factor = arguments_.number("duty"),
+                   .limbs = support ? support_limbs(transfer) : transfer_limbs(transfer)});
+}
+
+void Preparer::arm_swing(double sign) {
+    const Side side = call_.subject.limb == Limb::kLeftArm ? Side::kLeft : Side::kRight;
+    if (around_.holds.valid()) {
+        note("hands-full", "the arm that shall swing holds a prop",
+             "leave both arms to carry(...)");
+        result_.movement = make_carry(context_, {.radius_m = radius(around_.holds)});
+        return;
+    }
+    result_.movement =
+        make_arm_swing(context_, {.side = side, .angle_rad = sign * arguments_.number("angle")});
+}
+
+void Preparer::reach() {
+    const ArgumentValue* to = arguments_.find("to");
+    PUP_REQUIRE(to != nullptr);
+    const auto* actor = std::get_if<ActorIndex>(to);
+    result_.prop = arguments_.prop("to");
+    const Vec3 target = actor != nullptr ? head_of(*actor) : place_of(*to);
+    result_.gaze = {.kind = GazeKind::kPoint, .point_world = target};
+    if (around_.holds.valid()) {
+        note("hands-full", "the hand that shall reach holds a prop", "throw it first");
+        result_.movement = make_carry(context_, {.radius_m = radius(around_.holds)});
+        return;
+    }
+    result_.movement =
+        make_reach(context_, {.side = arguments_.side("side"), .target_world = target});
+}
+
+void Preparer::carry(bool stay) {
+    const PropIndex ball = result_.prop = arguments_.prop("ball");
+    if (!holds(ball)) {
+        note("not-held", "it carries what its hands do not hold", "let it catch the prop first");
+    }
+    result_.movement = make_carry(context_, {.radius_m = radius(ball),
+                                             .held = around_.holds.valid(),
+                                             .stay = stay && around_.holds.valid()});
+}
+
+Checked<Prepared> Preparer::run() {
+    const std::string_view name = signature_.name;
+    if (signature_.subject == SubjectKind::kLimb) {
+        if (name == "support" || name == "transfer") {
+            leg(name == "support");
+        } else {
+            arm_swing(name == "swing_forward" ? 1 : -1);
+        }
+    } else if (name == "idle" || name == "stand") {
+        stand();
+    } else if (name == "step") {
+        step(StepKind::kWhole, arguments_.number("stroke"));
+    } else if (name == "half_step") {
+        step(half_kind(arguments_.side("side")), 2 * arguments_.number("stroke"));
+    } else if (name == "walk") {
+        walk();
+    } else if (name == "face") {
+        face();
+    } else if (name == "turn") {
+        turn_to(heading_of(context_.now.pelvis.rotation_world) + arguments_.number("by"));
+    } else if (name == "ready") {
+        ready();
+    } else if (name == "throw") {
+        throw_ball();
+    } else if (name == "catch") {
+        catch_ball();
+    } else if (name == "carry" || name == "hold") {
+        carry(name == "hold");
+    } else if (name == "reach") {
+        reach();
+    } else {
+        PUP_REQUIRE(name == "swing");
+        result_.movement = make_relax(context_, 1);
+    }
+    if (!errors_.empty()) {
+        return Unexpected(std::move(errors_));
+    }
+    return std::move(result_);
+}
+
+}  // namespace
+
+Checked<Prepared> prepare(const BoundCall& call, const MotionContext& context,
+                          const Surroundings& around, Diagnostics& notes) {
+    const MovementSignature* signature = find_movement(call.movement, call.subject.kind);
+    PUP_REQUIRE(signature != nullptr);
+    return Preparer(call, *signature, context, around, notes).run();
+}
+
+}  // namespace puppetri::motion

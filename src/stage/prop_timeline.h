@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Who has one prop, from when on: hands, the air, or the floor. One holder at any time, by
+// construction.
+#pragma once
+#include <vector>
+
+#include "puppetri/motion/bound_call.h"
+#include "puppetri/motion/flight.h"
+
+namespace puppetri::stage {
+
+enum class Holding : std::uint8_t { kHands, kFlight, kFloor };
+
+struct Hold {
+    SimTime from = {};
+    Holding kind = Holding::kFloor;
+    motion::ActorIndex actor = {};   // kHands; kFlight: who threw it, or none
+    motion::ActorIndex target = {};  // kFlight: who shall catch it, or none
+    Quat hands_from_prop =
+        {};  // kHands: how it lies between the hands (its spin goes on from catch to catch)
+    motion::Flight flight = {};  // kFlight
+    Transform lies = {};         // kFloor
+};
+
+class PropTimeline {
+ public:
+    // Needs `hold.from` not before any earlier one; at the same instant the later call wins.
+    void take(const Hold& hold);
+    const Hold& at(SimTime at, bool before = false) const;
+    const std::vector<Hold>& holds() const { return holds_; }
+
+ private:
+    std::vector<Hold> holds_;
+};
+
+}  // namespace puppetri::stage

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "take.h"
+
+#include <algorithm>
+
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/gaze.h"
+#include "puppetri/motion/grip.h"
+#include "puppetri/motion/solve_controls.h"
+
+namespace puppetri::stage {
+namespace {
+
+// The transform of one joint in the world: the product along its ancestors.
+Transform world_from_joint(const figure::Skeleton& skeleton, const figure::Pose& pose,
+                           figure::JointIndex joint) {
+    Transform t = pose.parent_from_joint[joint.value];
+    for (figure::JointIndex p = skeleton.joints[joint.value].parent; p.valid();
+         p = skeleton.joints[p.value].parent) {
+        t = pose.parent_from_joint[p.value] * t;
+    }
+    return t;
+}
+
+}  // namespace
+
+void Take::pose(ActorIndex actor, SimTime at, figure::Pose& out, bool before) const {
+    const ActorTake& a = actors[actor.value];
+    motion::Controls controls;
+    a.timeline.sample(at, controls, before);
+    if (!a.gaze_track.empty()) {
+        controls.body.chest_from_head =
+            normalized(from_rotation_vector(a.gaze_track.at(at)) * controls.body.chest_from_head);
+    }
+    motion::solve_controls(*a.figure, controls, out);
+}
+
+Transform Take::between_hands(ActorIndex actor, double radius_m, SimTime at, bool before) const {
+    static thread_local figure::Pose
+        pose_of_holder;  // scratch: results never depend on what it holds
+    pose(actor, at, pose_of_holder, before);
+    const figure::Figure& f = *actors[actor.value].figure;
+    return motion::ball_between(
+        f, world_from_joint(f.skeleton, pose_of_holder, f.arms[figure::kLeft].hand),
+        world_from_joint(f.skeleton, pose_of_holder, f.arms[figure::kRight].hand), radius_m);
+}
+
+Transform Take::world_from_prop(PropIndex prop, SimTime at, bool before) const {
+    const Hold& hold = props[prop.value].at(at, before);
+    switch (hold.kind) {
+        case Holding::kHands: {
+            Transform t = between_hands(hold.actor, radius(prop), at, before);
+            t.rotation = normalized(t.rotation * hold.hands_from_prop);
+            return t;
+        }
+        case Holding::kFlight:
+            return {hold.flight.rotation(at), hold.flight.position(at)};
+        case Holding::kFloor:
+            break;
+    }
+    return hold.lies;
+}
+
+bool Take::gaze_target(ActorIndex actor, SimTime at, Vec3& target_world) const {
+    const auto& spans = actors[actor.value].gazes;
+    const auto after = std::upper_bound(spans.begin(), spans.end(), at,
+                                        [](SimTime t, const GazeSpan& s) { return t < s.from; });
+    motion::Gaze gaze = after == spans.begin() ? motion::Gaze{} : (after - 1)->gaze;
+    if (gaze.kind ==
+        motion::GazeKind::kOwn) {  // nothing better to look at than a ball on its way from or to me
+        for (std::uint32_t i = 0; i < props.size(); ++i) {
+            const Hold& hold = props[i].at(at);
+            if (hold.kind == Holding::kFlight && (hold.actor == actor || hold.target == actor) &&
+                at <= hold.flight.start + hold.flight.duration) {
+                gaze = {.kind = motion::GazeKind::kProp, .prop = PropIndex{i}};
+            }
+        }
+    }
+    switch (gaze.kind) {
+        case motion::GazeKind::kOwn:
+            return false;
+        case motion::GazeKind::kPoint:
+            target_world = gaze.point_world;
+            return true;
+        case motion::GazeKind::kActor: {
+            const ActorTake& other = actors[gaze.actor.value];
+            motion::Controls controls;
+            other.timeline.sample(at, controls);
+            target_world =
+                controls.pelvis.position_world + Vec3{0, 0.4 * other.figure->height_m, 0};
+            return true;
+        }
+        case motion::GazeKind::kProp:
+            break;
+    }
+    const Hold& hold = props[gaze.prop.value].at(at);
+    if (hold.kind == Holding::kHands) {
+        const ActorTake& holder = actors[hold.actor.value];
+        motion::Controls controls;
+        holder.timeline.sample(at, controls);
+        target_world =
+            (motion::world_from_palm(*holder.figure, controls, motion::Side::kLeft).translation +
+             motion::world_from_palm(*holder.figure, controls, motion::Side::kRight).translation) *
+            0.5;
+    } else if (hold.kind == Holding::kFlight) {
+        target_world = hold.flight.position(at);
+    } else {
+        target_world = hold.lies.translation;
+    }
+    return true;
+}
+
+}  // namespace puppetri::stage

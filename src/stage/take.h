@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// What was taken: everything that decides poses and props, while the run adds to it and after it.
+// Stage writes it, TakePerformance reads it.
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "actor_timeline.h"
+#include "gaze_track.h"
+#include "prop_timeline.h"
+#include "puppetri/figure/mannequin.h"
+#include "puppetri/motion/prepare.h"
+#include "puppetri/stage/cast.h"
+#include "puppetri/stage/performance.h"
+
+namespace puppetri::stage {
+
+// Where an actor's eyes go from `from` on, as its movements say.
+struct GazeSpan {
+    SimTime from = {};
+    motion::Gaze gaze = {};
+};
+
+struct ActorTake {
+    std::unique_ptr<figure::Figure> figure;  // movements refer to it
+    ActorTimeline timeline;
+    std::vector<GazeSpan> gazes;
+    GazeTrack gaze_track;  // made when the take ends
+};
+
+struct Take {
+    Cast cast;
+    std::vector<ActorTake> actors;
+    std::vector<PropTimeline> props;
+    std::vector<ScoreEntry> score;
+    std::vector<StageEvent> events;
+    SimTime end = {};
+
+    double radius(PropIndex prop) const { return cast.props[prop.value].size_m.x / 2; }
+
+    // The pose of an actor, with its gaze once the track is made. `before`: just before the
+    // instant.
+    void pose(ActorIndex actor, SimTime at, figure::Pose& out, bool before = false) const;
+
+    // The prop's place. Between hands it is read off the solved pose, so that palms and prop cannot
+    // part.
+    Transform world_from_prop(PropIndex prop, SimTime at, bool before = false) const;
+
+    // The ball that the hands of this actor would hold: its centre, and the left hand's idea of its
+    // rotation.
+    Transform between_hands(ActorIndex actor, double radius_m, SimTime at,
+                            bool before = false) const;
+
+    // Where the eyes of an actor go, if they follow something: false leaves the head to the
+    // movement. Reads controls only, not poses.
+    bool gaze_target(ActorIndex actor, SimTime at, Vec3& target_world) const;
+};
+
+}  // namespace puppetri::stage
