@@ -7,6 +7,8 @@
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/idle.h"
 #include "travel.h"
+#include <cstdio>
+#include <cstdlib>
 
 namespace puppetri::motion {
 namespace {
@@ -14,13 +16,14 @@ namespace {
 // The shape of a walk. Angles after the averages of slow adult gait in Winter (2009, chapter 3) and
 // Perry (1992), except that the heel rises less before the foot leaves the floor, so that a
 // standing knee stays below 25 degrees.
-constexpr double kStrikePitch = radians(16), kLiftPitch = radians(-27), kSwingPitch = radians(-46);
+constexpr double kStrikePitch = radians(19), kLiftPitch = radians(-33), kSwingPitch = radians(-46);
 constexpr double kFlatAfterStrike = 0.17,
                  kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
 constexpr double kYaw = radians(5), kList = radians(2.5);
 constexpr double kSway = 0.0125;        // of the height, to either side
 constexpr double kBoundaryLead = 0.05;  // of the stroke
 constexpr double kClearance_m = 0.022;
+constexpr double kBrake = 6.5;            // at touch down, in units of way / time^2
 constexpr double kLongest = 0.9968,
                  kShortest = 0.9785;  // reach of a standing leg: knee 9.2 and 23.8 degrees
 
@@ -61,8 +64,9 @@ class Planner {
         const double T = plan_.duration_s;
         half_ = (clamp(spec_.duty_factor, 0.2, 0.9) - 0.5) *
                 n_;  // half of the double support; negative: of the flight
-        plan_.lift_s = first_ ? std::fmin(0.048 * n_, std::fmax(half_, 0) * 0.5) : half_;
-        plan_.strike_s = last_ ? T - std::fmin(0.048 * n_, std::fmax(half_, 0) * 0.5) : T - half_;
+        const double shift = std::fmin(0.045 * n_, std::fmax(half_, 0) * 0.5);
+        plan_.lift_s = first_ ? shift : half_;
+        plan_.strike_s = last_ ? T - shift : first_ ? T - half_ + shift : T - half_;
         plan_.support_strike_s = first_ ? -1 : -half_;
         plan_.support_lift_s = last_ ? T + 10 : T + half_;
     }
@@ -154,8 +158,7 @@ class Planner {
         double flat_s = 0;
         if (support_.planted) {
             foot.stand(0, support_print_);
-            flat_s = settle(support_.pitch,
-                            std::fmax(kFlatAfterStrike * n_ - std::fmax(half_, 0), 0.06), keys);
+            flat_s = settle(support_.pitch, keys);
         } else {
             flat_s =
                 land(foot, support_side_, support_, support_print_, plan_.support_strike_s, keys);
@@ -174,14 +177,15 @@ class Planner {
 
     // Keys that bring a planted foot flat; the remaining way is a quartic that ends with velocity
     // and acceleration 0.
-    double settle(Motion1 pitch, double time_s, std::vector<Key1>& keys) {
+    double settle(Motion1 pitch, std::vector<Key1>& keys) {
         if (std::fabs(pitch.position) < 1e-9 && std::fabs(pitch.velocity) < 1e-6) {
             keys.push_back({0, {}});
             return 0;
         }
         // pitch(t) = (R - t)^3 (c0 + c1 (R - t)): from position and velocity; the acceleration
         // follows.
-        const double R = time_s;
+        // R = 3.2 p / -v makes it nearly a pure cube, which never changes sign.
+        const double R = pitch.velocity * pitch.position < 0 ? clamp(-3.2 * pitch.position / pitch.velocity, 0.02, 0.25) : 0.2;
         const double c1 = -(pitch.velocity * R + 3 * pitch.position) / (R * R * R * R);
         const double c0 = pitch.position / (R * R * R) - c1 * R;
         pitch.acceleration = 6 * R * c0 + 12 * R * R * c1;
@@ -221,7 +225,7 @@ class Planner {
         const double d = strike - lift;
         // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
         // that all is smooth.
-        const double lift_to = first_ ? 0.35 * lift_pitch() : lift_pitch();
+        const double lift_to = first_ ? 0.12 * lift_pitch() : lift_pitch();
         const double strike_to = last_ ? 0.25 * strike_pitch() : strike_pitch();
         const double flat = last_ ? plan_.duration_s : strike + kFlatAfterStrike * n_;
         Motion1 start = swing_.pitch;
@@ -234,7 +238,7 @@ class Planner {
             way.push_back({lift, lift_to});
         }
         const double peak = rolls() || half_ < 0 ? kSwingPitch : radians(-24);
-        way.push_back({lift + 0.24 * d, first_ ? 0.8 * peak : peak});
+        way.push_back({lift + (first_ ? 0.36 : 0.24) * d, first_ ? 0.72 * peak : peak});
         way.push_back({lift + 0.62 * d, 0.12 * peak});
         Key1 end{strike, {}};
         if (strike_to > 0) {
@@ -255,7 +259,9 @@ class Planner {
                        ? Motion1{-at_lift.position, -at_lift.velocity, -at_lift.acceleration}
                        : Motion1{};
         }
-        const Motion3 to = to_path(ankle_on_print(f_, side, landing, pitch.at(strike)));
+        Motion3 to = to_path(ankle_on_print(f_, side, landing, pitch.at(strike)));
+        // The foot comes down while it still brakes: it would otherwise hang far ahead of the pelvis before it lands.
+        to.acceleration.z -= kBrake * (to.position.z - from.position.z) / (d * d);
         const Curve1 toes =
             minimum_jerk({lift, bend}, {{lift + 0.4 * d, radians(6)}}, {strike, {}});
         auto height_at = [&](double part, double clearance) {
@@ -299,7 +305,7 @@ class Planner {
                 const double r = reach * f_.leg_m;
                 return ankle.y - hip.y + std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01));
             };
-            b.highest = std::fmin(b.highest, height(stands ? kLongest : 0.992));
+            b.highest = std::fmin(b.highest, height(kLongest));
             if (stands) {
                 b.lowest = std::fmax(b.lowest, height(kShortest));
             }
@@ -316,7 +322,7 @@ class Planner {
         height.from = {now.position.y, now.velocity.y, first_ ? 0 : curvature};
         height.duration_s = T;
         height.end_is_free = !last_;
-        height.to = {0, 0, last_ ? 0 : curvature};
+        height.to = {0, last_ ? 0 : 0.2 * x_ / n_, last_ ? 0 : curvature};
         if (last_) {
             Controls feet;
             for (const Side side : {Side::kLeft, Side::kRight}) {
@@ -329,6 +335,9 @@ class Planner {
             height.bands.push_back(band(T * i / kBands));
         }
         plan_.pelvis_path.y = plan_height(height);
+        if (std::getenv("BAND"))
+            for (auto& b : height.bands)
+                std::printf("band %.3f  %.4f .. %.4f  y %.4f %s\n", b.t_s, b.lowest, b.highest, plan_.pelvis_path.y.at(b.t_s).position, plan_.pelvis_path.y.at(b.t_s).position > b.highest ? "HIGH" : plan_.pelvis_path.y.at(b.t_s).position < b.lowest ? "LOW" : "");
     }
 
     const figure::Figure& f_;

@@ -104,15 +104,15 @@ Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s) {
     return Curve1(std::move(keys));
 }
 
-// Unknown: the heights at a quarter, a half, three quarters and (when free) the end; the curve is
+// Unknown: the heights at a quarter, a half, three quarters and the end, and the velocity there; the curve is
 // linear in them. Repeated least squares over the bands that are left, each weighted by its kind,
 // plus a little of the acceleration.
 Curve1 plan_height(const HeightPlan& plan) {
-    constexpr std::size_t kUnknown = 4;
+    constexpr std::size_t kUnknown = 5;
     const double T = plan.duration_s;
     auto curve = [&](const std::array<double, kUnknown>& y, Motion1 from, Motion1 to) {
         return minimum_jerk({0, from}, {{T / 4, y[0]}, {T / 2, y[1]}, {3 * T / 4, y[2]}},
-                            {T, {y[3], to.velocity, to.acceleration}});
+                            {T, {y[3], to.velocity + y[4], to.acceleration}});
     };
     const double base = plan.from.position;  // heights are solved for relative to the start
     std::array<double, kUnknown> y{};
@@ -155,20 +155,26 @@ Curve1 plan_height(const HeightPlan& plan) {
                 now += value[s][i] * y[i];
             }
             const double lo = plan.bands[s].lowest - base, hi = plan.bands[s].highest - base;
-            if (round == 0 || now > hi || now < lo) {
-                const double target = round == 0 ? (lo + hi) / 2 : now > hi ? hi : lo;
-                add(value[s], target - value0[s], round == 0 ? 1 : now > hi ? 50 : 5);
+            // The middle of the band pulls a little everywhere, so that the curve is determined.
+            add(value[s], (lo + hi) / 2 - value0[s], 0.2);
+            if (round > 0 && (now > hi || now < lo)) {
+                add(value[s], (now > hi ? hi : lo) - value0[s], now > hi ? 40 : 10);
             }
-            add(bend[s], -bend0[s], 2e-5);
+            add(bend[s], -bend0[s], 4e-5);
         }
-        add({0, 0, 0, 1}, plan.to.position - base, pinned);
-        y = solve(rows, right);
+        add({0, 0, 0, 1, 0}, plan.to.position - base, pinned);
+        add({0, 0, 0, 0, 1}, 0, plan.end_is_free ? 1e-2 : 1e6);
+        const auto next = solve(rows, right);
+        for (std::size_t i = 0; i < kUnknown; ++i) {
+            y[i] += (next[i] - y[i]) * (round == 0 ? 1 : 0.6);
+        }
     }
-    for (double& height : y) {
-        height += base;
+    for (std::size_t i = 0; i < 4; ++i) {
+        y[i] += base;
     }
     if (!plan.end_is_free) {
         y[3] = plan.to.position;
+        y[4] = 0;
     }
     return curve(y, plan.from, plan.to);
 }
