@@ -16,16 +16,18 @@ namespace {
 // The shape of a walk. Angles after the averages of slow adult gait in Winter (2009, chapter 3) and
 // Perry (1992), except that the heel rises less before the foot leaves the floor, so that a
 // standing knee stays below 25 degrees.
-constexpr double kStrikePitch = radians(19), kLiftPitch = radians(-33), kSwingPitch = radians(-46);
+constexpr double kStrikePitch = radians(22), kLiftPitch = radians(-33), kSwingPitch = radians(-46);
 constexpr double kFlatAfterStrike = 0.17,
                  kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
-constexpr double kYaw = radians(5), kList = radians(2.5);
+constexpr double kYaw = radians(7), kList = radians(2.5);
 constexpr double kSway = 0.0125;        // of the height, to either side
 constexpr double kBoundaryLead = 0.05;  // of the stroke
 constexpr double kClearance_m = 0.022;
 constexpr double kBrake = 6.5;            // at touch down, in units of way / time^2
-constexpr double kLongest = 0.9968,
-                 kShortest = 0.9785;  // reach of a standing leg: knee 9.2 and 23.8 degrees
+constexpr double kSetDown_m = 1.6;         // the same upward, in m
+constexpr double kLongest = 0.9974,
+                 kLanding = 0.9932,
+                 kShortest = 0.9775;  // reach of a standing leg: knee 9.2 and 23.8 degrees
 
 class Planner {
  public:
@@ -64,8 +66,8 @@ class Planner {
         const double T = plan_.duration_s;
         half_ = (clamp(spec_.duty_factor, 0.2, 0.9) - 0.5) *
                 n_;  // half of the double support; negative: of the flight
-        const double shift = std::fmin(0.045 * n_, std::fmax(half_, 0) * 0.5);
-        plan_.lift_s = first_ ? shift : half_;
+        const double shift = std::fmin(0.049 * n_, std::fmax(half_, 0) * 0.5);
+        plan_.lift_s = first_ ? shift : last_ ? half_ - shift : half_;
         plan_.strike_s = last_ ? T - shift : first_ ? T - half_ + shift : T - half_;
         plan_.support_strike_s = first_ ? -1 : -half_;
         plan_.support_lift_s = last_ ? T + 10 : T + half_;
@@ -103,7 +105,7 @@ class Planner {
         const double midline = -side_ * f_.stance_half_width_m;
         Motion1 to{ahead_of_ankles(), 0, 0};
         if (first_) {
-            to = {ahead_of_ankles() + x_ / 2, 1.55 * speed, 0};
+            to = {ahead_of_ankles() + x_ / 2 - 0.015 * x_, 1.62 * speed, 0};
         } else if (whole_) {
             to = {ahead_of_ankles() + x_ / 2 + kBoundaryLead * x_, 1.28 * speed, 0};
         }
@@ -114,7 +116,7 @@ class Planner {
         const double rate = sway * kPi / n_;
         Motion1 aside_now{now.position.x, now.velocity.x, 0};
         Motion1 aside_end{midline, last_ ? 0 : -side_ * rate, 0};
-        const double peak = midline + side_ * sway * (whole_ ? 1 : 0.8);
+        const double peak = midline + side_ * sway * (whole_ ? 1 : 0.55);
         plan_.pelvis_path.x = minimum_jerk({0, aside_now}, {{T / 2, peak}}, {T, aside_end});
     }
 
@@ -164,7 +166,7 @@ class Planner {
                 land(foot, support_side_, support_, support_print_, plan_.support_strike_s, keys);
         }
         if (!last_) {
-            const double begin = std::fmax(plan_.duration_s - kHeelRise * n_, flat_s + 0.02);
+            const double begin = std::fmax(plan_.duration_s - (first_ ? 0.6 : 1) * kHeelRise * n_, flat_s + 0.02);
             const double length_s = plan_.support_lift_s - begin;
             if (length_s > 0.03) {
                 const Quintic rise = heel_rise(length_s);
@@ -225,8 +227,8 @@ class Planner {
         const double d = strike - lift;
         // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
         // that all is smooth.
-        const double lift_to = first_ ? 0.12 * lift_pitch() : lift_pitch();
-        const double strike_to = last_ ? 0.25 * strike_pitch() : strike_pitch();
+        const double lift_to = first_ ? 0.12 * lift_pitch() : last_ ? 0.78 * lift_pitch() : lift_pitch();
+        const double strike_to = (last_ ? 0.25 : first_ ? 1.3 : 1) * strike_pitch();
         const double flat = last_ ? plan_.duration_s : strike + kFlatAfterStrike * n_;
         Motion1 start = swing_.pitch;
         if (planted && !first_ && rolls()) {
@@ -239,7 +241,8 @@ class Planner {
         }
         const double peak = rolls() || half_ < 0 ? kSwingPitch : radians(-24);
         way.push_back({lift + (first_ ? 0.36 : 0.24) * d, first_ ? 0.72 * peak : peak});
-        way.push_back({lift + 0.62 * d, 0.12 * peak});
+        way.push_back({lift + 0.62 * d, 0.2 * peak});
+        way.push_back({lift + 0.86 * d, 1.05 * strike_to});
         Key1 end{strike, {}};
         if (strike_to > 0) {
             way.push_back({strike, strike_to});
@@ -261,7 +264,8 @@ class Planner {
         }
         Motion3 to = to_path(ankle_on_print(f_, side, landing, pitch.at(strike)));
         // The foot comes down while it still brakes: it would otherwise hang far ahead of the pelvis before it lands.
-        to.acceleration.z -= kBrake * (to.position.z - from.position.z) / (d * d);
+        to.acceleration.z -= (first_ ? 1.6 : 1) * kBrake * (to.position.z - from.position.z) / (d * d);
+        to.acceleration.y += (first_ ? 2.0 : 1) * kSetDown_m / (d * d);
         const Curve1 toes =
             minimum_jerk({lift, bend}, {{lift + 0.4 * d, radians(6)}}, {strike, {}});
         auto height_at = [&](double part, double clearance) {
@@ -305,7 +309,8 @@ class Planner {
                 const double r = reach * f_.leg_m;
                 return ankle.y - hip.y + std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01));
             };
-            b.highest = std::fmin(b.highest, height(kLongest));
+            const bool lands = transfers && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
+            b.highest = std::fmin(b.highest, height(lands ? kLanding : kLongest));
             if (stands) {
                 b.lowest = std::fmax(b.lowest, height(kShortest));
             }

@@ -71,7 +71,7 @@ Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s) {
         for (std::size_t k = 0; k < kKnots; ++k) {
             rows[k][k] += weight[k];
             if (k + 1 < kKnots) {
-                constexpr double kSmooth = 0.15;
+                constexpr double kSmooth = 0.05;
                 rows[k][k] += kSmooth;
                 rows[k + 1][k + 1] += kSmooth;
                 rows[k][k + 1] -= kSmooth;
