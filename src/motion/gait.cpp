@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "gait_plan.h"
+#include "living.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/base/require.h"
 #include "puppetri/math/rotation.h"
@@ -31,7 +32,10 @@ constexpr double kHalt_s = 0.05;
 class Step final : public Movement {
  public:
     Step(const MotionContext& context, const StepSpec& spec)
-        : figure_(context.figure), spec_(spec), plan_(plan_step(context, spec)) {
+        : figure_(context.figure),
+          spec_(spec),
+          plan_(plan_step(context, spec)),
+          living_(context.figure, context.seed, 1) {
         limbs = spec.limbs;
         duration =
             context.duration.ticks > 0 ? context.duration : whole_milliseconds(plan_.duration_s);
@@ -66,10 +70,8 @@ class Step final : public Movement {
             arms_[i].apply(t, c.arms[i]);
             c.legs[i].swivel_rad = swivel_[i].at(t);
         }
-        if (t_s > T) {
-            const double late = t_s - T;
-            c.body.breath +=
-                (0.5 - 0.5 * puppetri::cos(2 * kPi * late / 3.9)) * (1 - puppetri::exp(-late));
+        if (t_s > T && spec_.kind == StepKind::kLastHalf) {
+            living_.add(t_s - T, smooth_rise(t_s - T, 1.5), c);
         }
         copy_limbs(limbs, c, out);
     }
@@ -164,6 +166,7 @@ class Step final : public Movement {
     const figure::Figure& figure_;
     StepSpec spec_;
     StepPlan plan_;
+    Living living_;
     InertialBody body_, pelvis_turn_;
     std::array<InertialArm, 2> arms_;
     std::array<InertialOffset, 2> swivel_;

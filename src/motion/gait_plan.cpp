@@ -7,8 +7,6 @@
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/idle.h"
 #include "travel.h"
-#include <cstdio>
-#include <cstdlib>
 
 namespace puppetri::motion {
 namespace {
@@ -23,10 +21,9 @@ constexpr double kYaw = radians(7), kList = radians(2.5);
 constexpr double kSway = 0.0125;        // of the height, to either side
 constexpr double kBoundaryLead = 0.05;  // of the stroke
 constexpr double kClearance_m = 0.022;
-constexpr double kBrake = 6.5;            // at touch down, in units of way / time^2
-constexpr double kSetDown_m = 1.6;         // the same upward, in m
-constexpr double kLongest = 0.9974,
-                 kLanding = 0.9932,
+constexpr double kBrake = 6.5;      // at touch down, in units of way / time^2
+constexpr double kSetDown_m = 1.6;  // the same upward, in m
+constexpr double kLongest = 0.9974, kLanding = 0.9922,
                  kShortest = 0.9775;  // reach of a standing leg: knee 9.2 and 23.8 degrees
 
 class Planner {
@@ -166,7 +163,8 @@ class Planner {
                 land(foot, support_side_, support_, support_print_, plan_.support_strike_s, keys);
         }
         if (!last_) {
-            const double begin = std::fmax(plan_.duration_s - (first_ ? 0.6 : 1) * kHeelRise * n_, flat_s + 0.02);
+            const double begin =
+                std::fmax(plan_.duration_s - (first_ ? 0.6 : 1) * kHeelRise * n_, flat_s + 0.02);
             const double length_s = plan_.support_lift_s - begin;
             if (length_s > 0.03) {
                 const Quintic rise = heel_rise(length_s);
@@ -187,7 +185,9 @@ class Planner {
         // pitch(t) = (R - t)^3 (c0 + c1 (R - t)): from position and velocity; the acceleration
         // follows.
         // R = 3.2 p / -v makes it nearly a pure cube, which never changes sign.
-        const double R = pitch.velocity * pitch.position < 0 ? clamp(-3.2 * pitch.position / pitch.velocity, 0.02, 0.25) : 0.2;
+        const double R = pitch.velocity * pitch.position < 0
+                             ? clamp(-3.2 * pitch.position / pitch.velocity, 0.02, 0.25)
+                             : 0.2;
         const double c1 = -(pitch.velocity * R + 3 * pitch.position) / (R * R * R * R);
         const double c0 = pitch.position / (R * R * R) - c1 * R;
         pitch.acceleration = 6 * R * c0 + 12 * R * R * c1;
@@ -227,7 +227,9 @@ class Planner {
         const double d = strike - lift;
         // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
         // that all is smooth.
-        const double lift_to = first_ ? 0.12 * lift_pitch() : last_ ? 0.78 * lift_pitch() : lift_pitch();
+        const double lift_to = first_  ? 0.12 * lift_pitch()
+                               : last_ ? 0.78 * lift_pitch()
+                                       : lift_pitch();
         const double strike_to = (last_ ? 0.25 : first_ ? 1.3 : 1) * strike_pitch();
         const double flat = last_ ? plan_.duration_s : strike + kFlatAfterStrike * n_;
         Motion1 start = swing_.pitch;
@@ -263,9 +265,11 @@ class Planner {
                        : Motion1{};
         }
         Motion3 to = to_path(ankle_on_print(f_, side, landing, pitch.at(strike)));
-        // The foot comes down while it still brakes: it would otherwise hang far ahead of the pelvis before it lands.
-        to.acceleration.z -= (first_ ? 1.6 : 1) * kBrake * (to.position.z - from.position.z) / (d * d);
-        to.acceleration.y += (first_ ? 2.0 : 1) * kSetDown_m / (d * d);
+        // The foot comes down while it still brakes: it would otherwise hang far ahead of the
+        // pelvis before it lands.
+        to.acceleration.z -=
+            (first_ ? 1.0 : 1) * kBrake * (to.position.z - from.position.z) / (d * d);
+        to.acceleration.y += (first_ ? 0.8 : 1) * kSetDown_m / (d * d);
         const Curve1 toes =
             minimum_jerk({lift, bend}, {{lift + 0.4 * d, radians(6)}}, {strike, {}});
         auto height_at = [&](double part, double clearance) {
@@ -309,7 +313,8 @@ class Planner {
                 const double r = reach * f_.leg_m;
                 return ankle.y - hip.y + std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01));
             };
-            const bool lands = transfers && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
+            const bool lands =
+                transfers && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
             b.highest = std::fmin(b.highest, height(lands ? kLanding : kLongest));
             if (stands) {
                 b.lowest = std::fmax(b.lowest, height(kShortest));
@@ -340,9 +345,6 @@ class Planner {
             height.bands.push_back(band(T * i / kBands));
         }
         plan_.pelvis_path.y = plan_height(height);
-        if (std::getenv("BAND"))
-            for (auto& b : height.bands)
-                std::printf("band %.3f  %.4f .. %.4f  y %.4f %s\n", b.t_s, b.lowest, b.highest, plan_.pelvis_path.y.at(b.t_s).position, plan_.pelvis_path.y.at(b.t_s).position > b.highest ? "HIGH" : plan_.pelvis_path.y.at(b.t_s).position < b.lowest ? "LOW" : "");
     }
 
     const figure::Figure& f_;

@@ -4,8 +4,8 @@
 #include "puppetri/motion/idle.h"
 
 #include "foot_path.h"
+#include "living.h"
 #include "puppetri/base/elementary.h"
-#include "puppetri/base/random.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/inertialize.h"
 #include "times.h"
@@ -79,14 +79,10 @@ namespace {
 class Idle final : public Movement {
  public:
     Idle(const MotionContext& context, const IdleSpec& spec)
-        : figure_(context.figure), liveliness_(spec.liveliness) {
+        : figure_(context.figure), living_(context.figure, context.seed, spec.liveliness) {
         limbs = spec.limbs;
         duration =
             context.duration.ticks >= 0 ? context.duration : whole_milliseconds(spec.duration_s);
-        RandomStream random{stream_key(context.seed, "", "idle")};
-        for (double& phase : phase_) {
-            phase = 2 * kPi * random.uniform();
-        }
         plan_feet(context);
         for (const Side side : {Side::kLeft, Side::kRight}) {
             home_.arms[index_of(side)] = hanging_arm(figure_, side);
@@ -94,8 +90,8 @@ class Idle final : public Movement {
         // The own motion at the start, its rate, and the differences to the state that was found.
         constexpr double h = 1e-4;
         Controls own = home_, later = home_;
-        live(0, own);
-        live(h, later);
+        living_.add(0, 1, own);
+        living_.add(h, 1, later);
         const ControlsRate rate = rate_between(own, later, h);
         const double settle_s = 0.7;
         pelvis_ = {context.now.pelvis.position_world - own.pelvis.position_world,
@@ -114,7 +110,7 @@ class Idle final : public Movement {
 
     void sample(double t_s, Controls& out) const override {
         Controls c = home_;
-        live(t_s, c);
+        living_.add(t_s, 1, c);
         c.pelvis.position_world = c.pelvis.position_world + pelvis_.at(t_s);
         BodyControl turn{c.pelvis.rotation_world, {}, 0};
         pelvis_turn_.apply(t_s, turn);
@@ -150,43 +146,10 @@ class Idle final : public Movement {
             phases.push_back({leg_of(side), Phase::kSupport, down, kOpenEnd});
         }
         home_.pelvis = pelvis_over_feet(figure_, home_);
-        home_.pelvis.position_world.y -=
-            0.002 * figure_.height_m;  // room for the weight's way from leg to leg
-    }
-
-    // A slow wave in [-1, 1], period near `period_s`, never repeating in sight.
-    double wave(int channel, double period_s, double t_s) const {
-        const double w = 2 * kPi / period_s;
-        return 0.66 * puppetri::sin(w * t_s + phase_[channel]) +
-               0.34 * puppetri::sin(1.618 * w * t_s + phase_[channel + 1]);
-    }
-
-    void live(double t_s, Controls& c) const {
-        const double k = liveliness_, h = figure_.height_m;
-        const double weight = k * wave(0, 7.5, t_s), lean = k * wave(2, 5.1, t_s),
-                     glance = k * wave(4, 6.3, t_s);
-        const Quat home = c.pelvis.rotation_world;
-        c.pelvis.position_world =
-            c.pelvis.position_world + rotate(home, Vec3{0.009 * weight, 0, 0.003 * lean} * h);
-        // The hip of the free leg drops; the trunk stays upright over it.
-        const double list = radians(1.2) * weight;
-        c.pelvis.rotation_world = home * about_y(radians(1.5) * lean) * about_z(list);
-        c.body.pelvis_from_chest = about_z(-1.5 * list) * about_y(radians(1.2) * glance) *
-                                   about_x(radians(1.5 + 0.8 * lean));
-        c.body.chest_from_head = about_y(radians(7) * glance) *
-                                 about_x(radians(-1.5 + 2.5 * k * wave(6, 4.7, t_s))) *
-                                 about_z(0.5 * list);
-        c.body.breath = k * (0.5 - 0.5 * puppetri::cos(2 * kPi * t_s / 3.9 + phase_[8]));
-        for (int i = 0; i < 2; ++i) {
-            const double s = i == 0 ? 1 : -1;
-            Vec3& hand = c.arms[i].chest_from_hand.translation;
-            hand = hand + Vec3{-0.003 * weight, 0, 0.004 * lean - s * 0.002 * glance} * h;
-        }
     }
 
     const figure::Figure& figure_;
-    double liveliness_;
-    double phase_[9] = {};
+    Living living_;
     Controls home_;
     std::array<FootPath, 2> feet_;
     InertialOffset3 pelvis_;

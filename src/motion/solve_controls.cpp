@@ -71,7 +71,7 @@ class Solver {
         Vec3 toes_world = rotate(control.foot_rotation_world, {0, 0, 1});
         toes_world = normalized(Vec3{toes_world.x, 0, toes_world.z},
                                 rotate(c_.pelvis.rotation_world, {0, 0, 1}));
-        const Vec3 pole = rotate(pelvis_from_world.rotation, toes_world) * 0.7 + Vec3{0, 0, 0.3};
+        const Vec3 pole = rotate(pelvis_from_world.rotation, toes_world) * 0.6 + Vec3{0, 0, 0.4};
         const LimbResult limb = solve_limb(
             {.start = leg.hip_pelvis,
              .goal = goal,

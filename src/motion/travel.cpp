@@ -104,9 +104,9 @@ Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s) {
     return Curve1(std::move(keys));
 }
 
-// Unknown: the heights at a quarter, a half, three quarters and the end, and the velocity there; the curve is
-// linear in them. Repeated least squares over the bands that are left, each weighted by its kind,
-// plus a little of the acceleration.
+// Unknown: the heights at a quarter, a half, three quarters and the end, and the velocity there;
+// the curve is linear in them. Repeated least squares over the bands that are left, each weighted
+// by its kind, plus a little of the acceleration.
 Curve1 plan_height(const HeightPlan& plan) {
     constexpr std::size_t kUnknown = 5;
     const double T = plan.duration_s;

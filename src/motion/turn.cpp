@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+// Turning: in each pair of steps the foot on the side of the turn opens, the other follows.
+//
+// Feet that turned about the point between them would step on each other's heels. So the feet end
+// around a point that lies aside by a few centimetres, across the heading halfway through the turn:
+// a turn one way and the same turn back then cancel exactly (the way back is the mirror image at
+// the same halfway heading), and nobody drifts.
+#include "puppetri/motion/turn.h"
+
+#include <algorithm>
+
+#include "foot_path.h"
+#include "living.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/base/require.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/idle.h"
+#include "puppetri/motion/inertialize.h"
+#include "times.h"
+#include "travel.h"
+
+namespace puppetri::motion {
+namespace {
+
+constexpr double kNoStep = radians(3), kPairMost = radians(100);
+constexpr double kAside = 0.040;  // of the height, at 90 degrees
+constexpr double kClearance_m = 0.028;
+constexpr double kGround_s = 0.012;  // both feet stand this long between two steps
+constexpr double kLongest = 0.9972;
+
+class Turn final : public Movement {
+ public:
+    Turn(const MotionContext& context, const TurnSpec& spec)
+        : figure_(context.figure), living_(context.figure, context.seed, 1) {
+        limbs = spec.limbs;
+        const PelvisControl home = pelvis_over_feet(figure_, context.now);
+        from_ = heading_of(home.rotation_world);
+        angle_ = turn_between(from_, spec.heading_rad);
+        duration =
+            context.duration.ticks > 0 ? context.duration : whole_milliseconds(spec.duration_s);
+        T_ = duration.seconds();
+        PUP_REQUIRE(T_ > 0);
+        plan_feet(context);
+        plan_pelvis(context);
+        constexpr double h = 1e-4;
+        const Controls own = own_at(0), later = own_at(h);
+        const ControlsRate rate = rate_between(own, later, h);
+        const double blend_s = std::fmin(0.8 * T_, 0.6);
+        body_ = InertialBody(context.now.body, context.rate, own.body, rate, blend_s);
+        ControlsRate turn_now, turn_own;
+        turn_now.chest_angular_pelvis = context.rate.pelvis_angular_world;
+        turn_own.chest_angular_pelvis = rate.pelvis_angular_world;
+        pelvis_turn_ = InertialBody({context.now.pelvis.rotation_world, {}, 0}, turn_now,
+                                    {own.pelvis.rotation_world, {}, 0}, turn_own, blend_s);
+        for (int i = 0; i < 2; ++i) {
+            arms_[i] = InertialArm(context.now.arms[i], context.rate.arms[i], own.arms[i],
+                                   rate.arms[i], blend_s);
+            swivel_[i] = {context.now.legs[i].swivel_rad, context.rate.legs[i].swivel_rad_s,
+                          blend_s};
+        }
+    }
+
+    void sample(double t_s, Controls& out) const override {
+        Controls c = own_at(t_s);
+        BodyControl turn{c.pelvis.rotation_world, {}, 0};
+        pelvis_turn_.apply(t_s, turn);
+        c.pelvis.rotation_world = turn.pelvis_from_chest;
+        body_.apply(t_s, c.body);
+        for (int i = 0; i < 2; ++i) {
+            arms_[i].apply(t_s, c.arms[i]);
+            c.legs[i].swivel_rad = swivel_[i].at(t_s);
+        }
+        if (t_s > T_) {
+            living_.add(t_s - T_, smooth_rise(t_s - T_, 1.5), c);
+        }
+        copy_limbs(limbs, c, out);
+    }
+
+ private:
+    struct Swing {
+        Side side;
+        double begin_s, end_s, yaw_from, yaw_to;
+        Vec3 from, to;  // ankle, flat
+    };
+
+    // Where the point between the feet goes for a turn by `angle` from `heading`.
+    Vec3 aside(double heading, double angle) const {
+        const double way = kAside * figure_.height_m * puppetri::sin(std::fabs(angle) / 2) /
+                           puppetri::sin(kPi / 4);
+        const double across = heading + angle / 2 + (angle > 0 ? kPi / 2 : -kPi / 2);
+        return Vec3{puppetri::sin(across), 0, puppetri::cos(across)} * (1.41421356 * way);
+    }
+
+    void plan_feet(const MotionContext& context) {
+        const double floor_y = floor_under(figure_, context.now);
+        std::array<Landing, 2> landing;
+        std::array<Vec3, 2> ankle;
+        std::array<double, 2> yaw{};
+        double ready_s = 0;
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            const int i = index_of(side);
+            landing[i] = put_down(figure_, side, foot_state(figure_, context, side), floor_y);
+            ankle[i] = landing[i].print.ankle_flat;
+            yaw[i] = landing[i].print.yaw_rad;
+            ready_s = std::fmax(ready_s, landing[i].down_s);
+        }
+        centre_[0] = (ankle[0] + ankle[1]) * 0.5;
+        const bool moves = std::fabs(angle_) >= kNoStep && ready_s < 0.5 * T_;
+        const int pairs = moves ? 1 + static_cast<int>(std::fabs(angle_) / kPairMost) : 0;
+        Vec3 centre = centre_[0];
+        double heading = from_;
+        std::vector<Swing> swings;
+        const double window = pairs > 0 ? (T_ - ready_s) / (2 * pairs) : 0;
+        for (int k = 0; k < 2 * pairs; ++k) {
+            const Side opens = angle_ > 0 ? Side::kLeft : Side::kRight;
+            const Side side = k % 2 == 0 ? opens : other(opens);
+            if (k % 2 == 0) {
+                centre = centre + aside(heading, angle_ / pairs);
+                heading += angle_ / pairs;
+            }
+            const int i = index_of(side);
+            const double s = side == Side::kLeft ? 1 : -1;
+            Vec3 to = centre + rotate(about_y(heading), {s * figure_.stance_half_width_m, 0, 0});
+            to.y = floor_y + figure_.ankle_height_m;
+            const double begin = ready_s + k * window;
+            const double to_yaw = yaw[i] + turn_between(yaw[i], heading);
+            swings.push_back({side, begin + (k == 0 ? 0 : kGround_s / 2),
+                              begin + window - kGround_s / 2, yaw[i], to_yaw, ankle[i], to});
+            ankle[i] = to;
+            yaw[i] = to_yaw;
+        }
+        centre_[1] = centre;
+        to_ = heading;
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            feet_[index_of(side)] = std::move(landing[index_of(side)].path);
+            double stands_from = landing[index_of(side)].down_s;
+            if (stands_from > 0) {
+                phases.push_back({leg_of(side), Phase::kSwing, {}, to_time(stands_from)});
+                events.push_back({to_time(stands_from), "foot_strike", leg_of(side)});
+            }
+            for (const Swing& swing : swings) {
+                if (swing.side == side) {
+                    add_swing(swing);
+                    phases.push_back({leg_of(side), Phase::kSupport, to_time(stands_from),
+                                      to_time(swing.begin_s)});
+                    phases.push_back({leg_of(side), Phase::kSwing, to_time(swing.begin_s),
+                                      to_time(swing.end_s)});
+                    events.push_back({to_time(swing.begin_s), "foot_off", leg_of(side)});
+                    events.push_back({to_time(swing.end_s), "foot_strike", leg_of(side)});
+                    stands_from = swing.end_s;
+                }
+            }
+            phases.push_back({leg_of(side), Phase::kSupport, to_time(stands_from), kOpenEnd});
+        }
+        phases.erase(std::remove_if(phases.begin(), phases.end(),
+                                    [](const PhaseSpan& p) { return !(p.begin < p.end); }),
+                     phases.end());
+        std::stable_sort(events.begin(), events.end(),
+                         [](const MovementEvent& a, const MovementEvent& b) {
+                             return a.after_start < b.after_start;
+                         });
+        swings_ = std::move(swings);
+    }
+
+    void add_swing(const Swing& s) {
+        auto line = [&](double a, double b) {
+            return minimum_jerk({s.begin_s, {a, 0, 0}}, {}, {s.end_s, {b, 0, 0}});
+        };
+        const double middle = (s.begin_s + s.end_s) / 2, top = s.to.y + kClearance_m;
+        Curve3 ankle{
+            line(s.from.x, s.to.x),
+            minimum_jerk({s.begin_s, {s.from.y, 0, 0}}, {{middle, top}}, {s.end_s, {s.to.y, 0, 0}}),
+            line(s.from.z, s.to.z)};
+        FootPath& foot = feet_[index_of(s.side)];
+        foot.swing(s.begin_s, {}, std::move(ankle), line(s.yaw_from, s.yaw_to), Curve1());
+        foot.stand(s.end_s, footprint_at(figure_, s.side, s.to, s.yaw_to));
+    }
+
+    void plan_pelvis(const MotionContext& context) {
+        const Vec3 p = context.now.pelvis.position_world, v = context.rate.pelvis_velocity_world;
+        Controls end;
+        for (int i = 0; i < 2; ++i) {
+            end.legs[i] = feet_[i].at(T_);
+        }
+        const PelvisControl home = pelvis_over_feet(figure_, end);
+        // A little over the foot that stands, while the other swings.
+        std::vector<Waypoint1> x, z;
+        for (const Swing& s : swings_) {
+            const double t = (s.begin_s + s.end_s) / 2, part = t / T_;
+            const Vec3 way = lerp(p, home.position_world, smooth_rise(part, 1));
+            const Vec3 stands = feet_[1 - index_of(s.side)].at(t).ankle_world;
+            const Vec3 centre = lerp(centre_[0], centre_[1], part);
+            x.push_back({t, way.x + 0.08 * (stands.x - centre.x)});
+            z.push_back({t, way.z + 0.08 * (stands.z - centre.z)});
+        }
+        pelvis_.x = minimum_jerk({0, {p.x, v.x, 0}}, x, {T_, {home.position_world.x, 0, 0}});
+        pelvis_.z = minimum_jerk({0, {p.z, v.z, 0}}, z, {T_, {home.position_world.z, 0, 0}});
+        yaw_ = minimum_jerk({0, {from_, 0, 0}}, {}, {T_, {to_, 0, 0}});
+        HeightPlan height;
+        height.from = {p.y, v.y, 0};
+        height.duration_s = T_;
+        height.to = {home.position_world.y, 0, 0};
+        constexpr int kBands = 16;
+        for (int i = 1; i <= kBands; ++i) {
+            const double t = T_ * i / kBands;
+            HeightBand band{t, 0, 1e9};
+            for (int side = 0; side < 2; ++side) {
+                const LegControl leg = feet_[side].at(t);
+                const Vec3 hip =
+                    rotate(about_y(yaw_.at(t).position), figure_.legs[side].hip_pelvis);
+                const double dx = pelvis_.x.at(t).position + hip.x - leg.ankle_world.x;
+                const double dz = pelvis_.z.at(t).position + hip.z - leg.ankle_world.z;
+                const double r = kLongest * figure_.leg_m;
+                band.highest = std::fmin(band.highest,
+                                         leg.ankle_world.y - hip.y +
+                                             std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01)));
+            }
+            band.lowest = band.highest - 0.012 * figure_.height_m;
+            height.bands.push_back(band);
+        }
+        pelvis_.y = plan_height(height);
+    }
+
+    Controls own_at(double t) const {
+        Controls c;
+        const Motion1 yaw = yaw_.at(t);
+        c.pelvis.position_world = pelvis_.at(t).position;
+        c.pelvis.rotation_world = about_y(yaw.position);
+        // The head turns first, then the chest, then the pelvis.
+        const double done = clamp(t / T_, 0, 1),
+                     lead = angle_ * 16 * done * done * (1 - done) * (1 - done);
+        c.body.pelvis_from_chest = about_y(0.10 * lead) * about_x(radians(1.5));
+        c.body.chest_from_head = about_y(0.16 * lead) * about_x(radians(-1.5));
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            c.legs[index_of(side)] = feet_[index_of(side)].at(t);
+            c.arms[index_of(side)] = hanging_arm(figure_, side);
+        }
+        return c;
+    }
+
+    const figure::Figure& figure_;
+    Living living_;
+    double from_ = 0, to_ = 0, angle_ = 0, T_ = 0;
+    Vec3 centre_[2];
+    std::vector<Swing> swings_;
+    std::array<FootPath, 2> feet_;
+    Curve3 pelvis_;
+    Curve1 yaw_;
+    InertialBody body_, pelvis_turn_;
+    std::array<InertialArm, 2> arms_;
+    std::array<InertialOffset, 2> swivel_;
+};
+
+}  // namespace
+
+MovementPtr make_turn(const MotionContext& context, const TurnSpec& spec) {
+    return std::make_shared<Turn>(context, spec);
+}
+
+double turn_duration_s(double angle_rad) {
+    const double angle = std::fabs(angle_rad);
+    return angle < kNoStep ? 0.3 : 0.35 + 0.2 * angle;
+}
+
+double heading_to(const Controls& controls, Vec3 target_world) {
+    const Vec3 way =
+        target_world - (controls.legs[0].ankle_world + controls.legs[1].ankle_world) * 0.5;
+    return way.x * way.x + way.z * way.z > 1e-8 ? heading_of(way)
+                                                : heading_of(controls.pelvis.rotation_world);
+}
+
+}  // namespace puppetri::motion
