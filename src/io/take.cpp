@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "held_props.h"
 #include "period.h"
 #include "rest_pose.h"
 
@@ -91,42 +92,65 @@ void apply_root_mode(RootMode mode, figure::JointIndex hips, const Transform& fi
     }
 }
 
-struct ActorPlan {
-    std::uint32_t actor = 0;
-    bool from_origin = false;  // begins with the root at the origin
+// Asks the poses of one actor and applies what the options say about its root.
+class ActorSampler {
+ public:
+    // from_origin: the root begins at the origin.
+    ActorSampler(const stage::Performance& performance, std::uint32_t actor, SimTime start,
+                 bool from_origin, const TakeOptions& options)
+        : performance_(performance),
+          actor_(actor),
+          start_(start),
+          mode_(options.root),
+          hips_(performance.actors()[actor].skeleton->find("hips")) {
+        performance.pose({actor}, start, pose_);
+        PUP_REQUIRE(!pose_.parent_from_joint.empty());
+        PUP_REQUIRE(pose_.parent_from_joint.size() ==
+                    performance.actors()[actor].skeleton->joints.size());
+        world_first_root_ = pose_.parent_from_joint[0];
+        file_from_world_ = from_origin ? inverse(world_first_root_) : Transform{};
+    }
+
+    // Skeleton and mesh, no keys yet.
+    TakeActor actor(RestPose rest, SimTime end) {
+        const stage::ActorView& view = performance_.actors()[actor_];
+        TakeActor actor;
+        actor.name = view.name;
+        actor.skeleton = rest == RestPose::kA ? with_a_pose(*view.skeleton) : *view.skeleton;
+        if (view.mesh != nullptr) {
+            actor.mesh = rest == RestPose::kA ? rebound(*view.mesh, *view.skeleton, actor.skeleton)
+                                              : *view.mesh;
+        }
+        performance_.pose({actor_}, start_ + end, pose_);
+        actor.root_delta = inverse(world_first_root_) * pose_.parent_from_joint[0];
+        return actor;
+    }
+
+    // The pose at a time of the file. Valid until the next call.
+    std::span<const Transform> sample(SimTime at) {
+        performance_.pose({actor_}, start_ + at, pose_);
+        pose_.parent_from_joint[0] = file_from_world_ * pose_.parent_from_joint[0];
+        apply_root_mode(mode_, hips_, file_from_world_ * world_first_root_,
+                        pose_.parent_from_joint);
+        return pose_.parent_from_joint;
+    }
+
+ private:
+    const stage::Performance& performance_;
+    std::uint32_t actor_ = 0;
+    SimTime start_;
+    RootMode mode_ = RootMode::kMotion;
+    figure::JointIndex hips_;
+    Transform world_first_root_, file_from_world_;
+    figure::Pose pose_;
 };
 
-TakeActor sample_actor(const stage::Performance& performance, const ActorPlan& plan, SimTime start,
-                       std::span<const SimTime> times, const TakeOptions& options) {
-    const stage::ActorView& view = performance.actors()[plan.actor];
-    TakeActor actor;
-    actor.name = view.name;
-    actor.skeleton = options.rest == RestPose::kA ? with_a_pose(*view.skeleton) : *view.skeleton;
-    if (view.mesh != nullptr) {
-        actor.mesh = options.rest == RestPose::kA
-                         ? rebound(*view.mesh, *view.skeleton, actor.skeleton)
-                         : *view.mesh;
-    }
-    const std::size_t joints = actor.skeleton.joints.size();
-    PUP_REQUIRE(joints > 0);
-    const figure::JointIndex hips = actor.skeleton.find("hips");
-    actor.parent_from_joint.resize(times.size() * joints);
-    figure::Pose pose;
-    Transform first_root, origin_from_world;
-    for (std::size_t key = 0; key < times.size(); ++key) {
-        performance.pose({plan.actor}, start + times[key], pose);
-        PUP_REQUIRE(pose.parent_from_joint.size() == joints);
-        if (key == 0) {
-            first_root = pose.parent_from_joint[0];
-            origin_from_world = plan.from_origin ? inverse(first_root) : Transform{};
-        }
-        if (key + 1 == times.size()) {
-            actor.root_delta = inverse(first_root) * pose.parent_from_joint[0];
-        }
-        pose.parent_from_joint[0] = origin_from_world * pose.parent_from_joint[0];
-        apply_root_mode(options.root, hips, origin_from_world * first_root, pose.parent_from_joint);
-        std::copy(pose.parent_from_joint.begin(), pose.parent_from_joint.end(),
-                  actor.parent_from_joint.begin() + static_cast<std::ptrdiff_t>(key * joints));
+TakeActor sample_actor(ActorSampler& sampler, RestPose rest, std::span<const SimTime> times) {
+    TakeActor actor = sampler.actor(rest, times.back());
+    actor.parent_from_joint.reserve(times.size() * actor.skeleton.joints.size());
+    for (const SimTime at : times) {
+        const auto pose = sampler.sample(at);
+        actor.parent_from_joint.insert(actor.parent_from_joint.end(), pose.begin(), pose.end());
     }
     return actor;
 }
@@ -145,6 +169,56 @@ TakeProp sample_prop(const stage::Performance& performance, std::uint32_t prop, 
         }
     }
     return result;
+}
+
+// How far a held prop may leave the hand between keys.
+constexpr double kLooseProp_m = 2.5e-4;
+
+// Adds keys at the given times, in increasing order, none of them a key yet.
+void insert_keys(Take& take, std::span<const SimTime> added, std::span<ActorSampler> samplers,
+                 const stage::Performance& performance, SimTime start) {
+    std::vector<SimTime> times;
+    std::vector<std::uint32_t> old_key;  // of each new key; kNew where it was none
+    constexpr std::uint32_t kNew = ~std::uint32_t{0};
+    for (std::uint32_t key = 0, next = 0; key < take.times.size(); ++key) {
+        for (; next < added.size() && added[next] < take.times[key]; ++next) {
+            times.push_back(added[next]);
+            old_key.push_back(kNew);
+        }
+        times.push_back(take.times[key]);
+        old_key.push_back(key);
+    }
+    take.times = std::move(times);
+    std::uint32_t frame = 0;
+    for (std::uint32_t key = 0; key < old_key.size(); ++key) {
+        if (frame < take.frame_keys.size() && old_key[key] == take.frame_keys[frame]) {
+            take.frame_keys[frame++] = key;
+        }
+    }
+    for (std::size_t a = 0; a < take.actors.size(); ++a) {
+        std::vector<Transform>& keys = take.actors[a].parent_from_joint;
+        const std::size_t joints = take.actors[a].skeleton.joints.size();
+        std::vector<Transform> all;
+        all.reserve(take.times.size() * joints);
+        for (std::size_t key = 0; key < old_key.size(); ++key) {
+            const auto pose = old_key[key] == kNew ? samplers[a].sample(take.times[key])
+                                                   : std::span<const Transform>(keys).subspan(
+                                                         old_key[key] * joints, joints);
+            all.insert(all.end(), pose.begin(), pose.end());
+        }
+        keys = std::move(all);
+    }
+    for (std::uint32_t p = 0; p < take.props.size(); ++p) {
+        std::vector<Transform>& keys = take.props[p].world_from_prop;
+        std::vector<Transform> all;
+        all.reserve(take.times.size());
+        for (std::size_t key = 0; key < old_key.size(); ++key) {
+            all.push_back(old_key[key] == kNew
+                              ? performance.world_from_prop({p}, start + take.times[key])
+                              : keys[old_key[key]]);
+        }
+        keys = std::move(all);
+    }
 }
 
 // Keys, events and frames of the take; `only` keeps the events of one actor.
@@ -194,11 +268,21 @@ Checked<Take> sample_take(const stage::Performance& performance, const TakeOptio
         frames.push_back({take.rate.time_of(frame) - start, true});
     }
     fill_times(take, performance, start, std::move(frames), options.keys_at_events, "");
+    std::vector<ActorSampler> samplers;
     for (std::uint32_t a = 0; a < performance.actors().size(); ++a) {
-        take.actors.push_back(sample_actor(performance, {a, false}, start, take.times, options));
+        samplers.emplace_back(performance, a, start, false, options);
+        take.actors.push_back(sample_actor(samplers.back(), options.rest, take.times));
     }
     for (std::uint32_t p = 0; p < performance.props().size(); ++p) {
         take.props.push_back(sample_prop(performance, p, start, take.times));
+    }
+    // Halving a gap quarters the error; four times are enough for any throw.
+    for (int i = 0; i < 4 && options.keys_at_events; ++i) {
+        const std::vector<SimTime> middles = loose_middles(take, kLooseProp_m);
+        if (middles.empty()) {
+            break;
+        }
+        insert_keys(take, middles, samplers, performance, start);
     }
     if (options.loop) {
         close_loop(take);
@@ -251,8 +335,8 @@ Checked<std::vector<Take>> sample_clips(const stage::Performance& performance,
             }
             fill_times(take, performance, entry->start, std::move(frames), options.keys_at_events,
                        actors[a].name);
-            take.actors.push_back(
-                sample_actor(performance, {a, true}, entry->start, take.times, options));
+            ActorSampler sampler(performance, a, entry->start, true, options);
+            take.actors.push_back(sample_actor(sampler, options.rest, take.times));
             clips.push_back(std::move(take));
         }
     }

@@ -70,11 +70,11 @@ TEST_CASE("all channels zero is the rest pose, whatever axes the skeleton uses [
         REQUIRE(take);
         const Bvh bvh = test::read_bvh(io::make_bvh(*take, 0, {.unit = io::LengthUnit::kMetre}));
         const figure::Skeleton& skeleton = take->actors[0].skeleton;
-        std::vector<Transform> model(7);
+        std::vector<Transform> model(8);
         figure::to_model_space(skeleton, figure::rest_pose(skeleton), model);
         const auto zero = bvh.pose(std::vector<double>(bvh.frames[0].size(), 0));
         const auto hips = static_cast<std::size_t>(bvh.find("hips"));
-        for (std::size_t j = 2; j < 7; ++j) {
+        for (std::size_t j = 2; j < 8; ++j) {
             const auto joint = static_cast<std::size_t>(bvh.find(skeleton.joints[j].name));
             const Vec3 here = model[j].translation - model[1].translation;
             const Eigen::Vector3d there = zero[joint].translation() - zero[hips].translation();

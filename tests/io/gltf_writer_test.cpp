@@ -93,7 +93,7 @@ TEST_CASE(
     figure::Pose pose;
     performance.pose({0}, FakePerformance::at(1.375), pose);
     const figure::Skeleton& skeleton = performance.skeleton();
-    std::vector<Transform> now(7), rest(7);
+    std::vector<Transform> now(8), rest(8);
     figure::to_model_space(skeleton, pose, now);
     figure::to_model_space(skeleton, figure::rest_pose(skeleton), rest);
     const figure::Mesh& mesh = *performance.actors()[0].mesh;
@@ -266,7 +266,7 @@ TEST_CASE("clips per movement begin at the origin, one per actor and place [unit
     const auto world = file.pose(1, 0.25);
     figure::Pose pose;
     performance.pose({0}, FakePerformance::at(0.75), pose);
-    std::vector<Transform> now(7);
+    std::vector<Transform> now(8);
     figure::to_model_space(performance.skeleton(), pose, now);
     const auto root = static_cast<std::size_t>(file.find("ana_root")),
                arm = static_cast<std::size_t>(file.find("ana_leftLowerArm"));
@@ -349,4 +349,50 @@ TEST_CASE("the events file holds the same markers, and says which clip they are 
     const auto clips = io::sample_clips(performance, {});
     REQUIRE(clips);
     CHECK(io::make_events_json(*clips, "").find(R"("clip":"ana_step_P4")") != std::string::npos);
+}
+
+namespace {
+
+// Ana swings the ball in her left hand, as in a throw.
+class Swing final : public FakePerformance {
+ public:
+    Transform world_from_prop(stage::PropIndex, SimTime at) const override {
+        return hand(at) * Transform{{}, {0, 0.1, 0.05}};
+    }
+    std::string holder(stage::PropIndex, SimTime) const override { return "ana.left_hand"; }
+
+ private:
+    Transform hand(SimTime at) const {
+        figure::Pose now;
+        pose({0}, at, now);
+        std::vector<Transform> world_from_joint(8);
+        figure::to_model_space(skeleton(), now, world_from_joint);
+        return world_from_joint[7];
+    }
+};
+
+// How far the ball in the file moves against the hand in the file, at 480 instants a second.
+double looseness_m(const GltfFile& file) {
+    const auto hand = static_cast<std::size_t>(file.find("ana_leftHand")),
+               ball = static_cast<std::size_t>(file.find("ball"));
+    double worst = 0;
+    for (int i = 0; i <= 960; ++i) {
+        const auto world = file.pose(0, i / 480.0);
+        const Eigen::Vector3d grip = world[hand].inverse() * world[ball].translation();
+        worst = std::max(worst, (grip - Eigen::Vector3d(0, 0.1, 0.05)).norm());
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a swung ball stays in the hand between the keys of the file too [law]") {
+    const Swing performance;
+    const GltfFile loose = exported(performance, {.keys_at_events = false}),
+                   held = exported(performance);
+    CHECK(loose.clips[0].curves.at({loose.find("ball"), "translation"}).times.size() == 97);
+    CHECK(looseness_m(loose) > 2e-3);
+    CHECK(looseness_m(held) < 5e-4);
+    // The frames are still there.
+    CHECK(worst_joint_m(held, performance, 0, 13 / 24.0, FakePerformance::at(13 / 24.0)) < 1e-5);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A performance by formula, for tests of what reads performances: two puppets of seven joints whose
+// A performance by formula, for tests of what reads performances: two puppets of eight joints whose
 // axes are askew at rest, a ball, a score that repeats every second. What it answers is known in
 // closed form and exact at every time.
 #pragma once
@@ -27,9 +27,10 @@ inline figure::Skeleton puppet_skeleton() {
         joint("spine", 1, {0, 0.2, 0.01}, from_axis_angle({0, 1, 0}, 0.3)),
         joint("leftUpperArm", 2, {0.2, 0.3, 0}, from_axis_angle(normalized(Vec3{1, 2, 3}), 1.1)),
         joint("leftLowerArm", 3, {0.1, 0.25, 0.02},
-              from_axis_angle(normalized(Vec3{-1, 0, 2}), 0.7), {0, 0.25, 0}),
+              from_axis_angle(normalized(Vec3{-1, 0, 2}), 0.7)),
         joint("rightUpperArm", 2, {-0.2, 0.3, 0}, from_axis_angle({0, 0, 1}, 1.5), {0, 0.5, 0}),
         joint("leftUpperLeg", 1, {0.1, -0.05, 0}, {}, {0, -0.9, 0}),
+        joint("leftHand", 4, {0, 0.25, 0}, {}, {0, 0.1, 0}),
     };
     return s;
 }
@@ -62,7 +63,7 @@ inline figure::Mesh puppet_mesh(const figure::Skeleton& skeleton) {
     return mesh;
 }
 
-class FakePerformance final : public stage::Performance {
+class FakePerformance : public stage::Performance {
  public:
     explicit FakePerformance(double seconds = 4) : seconds_(seconds) {
         actor_views_ = {{"ana", &skeleton_, &mesh_}, {"rui", &skeleton_, &mesh_}};
@@ -121,7 +122,7 @@ class FakePerformance final : public stage::Performance {
         return {about_x(3 * t), {0.3 * std::sin(2 * kPi * t), 1.2, t}};
     }
     std::string holder(stage::PropIndex, SimTime time) const override {
-        return time.ticks % kTicksPerSecond < at(0.75).ticks ? "ana.hands" : "air";
+        return time.ticks % kTicksPerSecond < at(0.75).ticks ? "floor" : "air";
     }
     motion::Phase phase(stage::ActorIndex, motion::Limb, SimTime) const override {
         return motion::Phase::kSupport;

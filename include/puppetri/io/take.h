@@ -45,7 +45,9 @@ struct TakeOptions {
         0;  // more frames before and after `frames`, as far as there are any
     RootMode root = RootMode::kMotion;
     RestPose rest = RestPose::kT;
-    bool keys_at_events = true;  // besides the frames
+    // Besides the frames: keys at events, and where a held prop would leave the hand by more than
+    // 0.25 mm between keys.
+    bool keys_at_events = true;
     // Cuts one period out of `frames`: the earliest stretch in which every figure comes back to
     // what it did and how it stood. Its last key equals its first in everything but the travel of
     // the root.
