@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/base/distribution.h"
 #include "puppetri/base/expr.h"
 #include "puppetri/base/index.h"
 #include "puppetri/base/time.h"
@@ -29,21 +30,6 @@ struct AttributeDraft {
     ValueType type;
 };
 
-// Distributions of durations and delays. Parameters of type time, unless noted; they may read data
-// and attributes.
-enum class DistributionKind : std::uint8_t {
-    kUniform,  // low, high
-    kNormal,   // mean, deviation, low, high (truncated to [low, high]; both may be left out: [0,
-               // infinity))
-    kExponential,  // mean
-    kTriangular,   // low, mode, high
-    kErlang,       // shape (int), mean of the whole
-    kGamma,        // shape (real), mean of the whole
-    kEmpirical,    // values: each as likely, continuous between them (linear interpolation of the
-                   // sorted sample)
-    kDiscrete,     // value, weight (real), value, weight, ...: one of the values
-};
-
 // How long: of a token in its place, or of a transition's delay.
 enum class DurationKind : std::uint8_t {
     kConstant,      // a
@@ -61,7 +47,7 @@ struct DurationDraft {
         {0});  // type time; may read data, counts, bound variables (delays), attributes (places)
     Expr b = Expr::time({0});
     DistributionKind distribution = DistributionKind::kExponential;
-    std::vector<Expr> parameters;
+    std::vector<Expr> parameters;  // times (as seconds) or numbers, as base/distribution.h says
     PlaceIndex sibling;
     SourceSpan where;
 

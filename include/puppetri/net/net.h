@@ -5,6 +5,7 @@
 // entries; names, captions and source positions lie apart.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -52,12 +53,11 @@ enum class PlaceKind : std::uint8_t {
     kRich,   // records with serial, arrival, ready time, attributes, activity
 };
 
-// Names, captions, source positions: looked at by people only.
-struct ElementInfo {
-    std::string path;
-    std::string caption;
+// Names, captions, source positions: looked at by people only. The texts live as long as the net.
+struct ElementView {
+    std::string_view path;
+    std::string_view caption;
     SourceSpan where;
-    bool operator==(const ElementInfo&) const = default;
 };
 
 struct NetTables;  // the inner tables of the engine, net/tables.h
@@ -76,10 +76,10 @@ class Net {
     std::uint32_t datum_count() const;
     std::uint32_t event_count() const;
 
-    const ElementInfo& place(PlaceIndex p) const;
-    const ElementInfo& transition(TransitionIndex t) const;
-    const ElementInfo& datum(DatumIndex d) const;
-    const ElementInfo& event(EventIndex e) const;
+    ElementView place(PlaceIndex p) const;
+    ElementView transition(TransitionIndex t) const;
+    ElementView datum(DatumIndex d) const;
+    ElementView event(EventIndex e) const;
 
     // By full path, also the old names of fused places. Invalid when there is none.
     PlaceIndex find_place(std::string_view path) const;
@@ -94,9 +94,9 @@ class Net {
     ActionIndex action(PlaceIndex p) const;  // invalid: none
     // No duration, delay, holding or schedule anywhere: one firing per beat.
     bool paced() const;
-    // The checked draft after lowering, fusion and rendezvous: what the tables were made from. For
-    // provers and drawings.
-    const NetDraft& lowered() const;
+    // Data, events, schedule, rules, states, final markings, host atoms: the lowered draft without its places and
+    // transitions; indices in it are those of the net.
+    const NetDraft& declarations() const;
     // Of the whole net, names and all: equal nets have equal hashes.
     std::uint64_t hash() const;
     // What a run touches per place and per arc, without names, captions and source positions.
@@ -104,11 +104,11 @@ class Net {
     // Rounding to ticks and the like: not an error.
     const Diagnostics& notes() const;
 
-    const NetTables& tables() const { return *tables_; }
+    const NetTables& tables() const { return *tables_; }  // net/tables.h: for the engine and provers
 
  private:
     friend Checked<Net> compile(const NetDraft& draft);
-    NetTables* tables_;
+    std::unique_ptr<NetTables> tables_;
 };
 
 // Rewrites `for d`, refinements, fusions and rendezvous into plain places, transitions and arcs.

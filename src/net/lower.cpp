@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: MIT
+// Composition as rewriting of the draft: fused places become one, a rendezvous becomes one transition, `for d` becomes
+// begin -> busy -> end, and a refined place gets its module's start and finish into its arcs. Afterwards nothing of
+// these is left, so that simulator and prover never hear of them.
+#include "lower.h"
+
+#include <algorithm>
+
+#include "check.h"
+#include "puppetri/net/net.h"
+#include "visit.h"
+
+namespace puppetri::net {
+
+void report(Diagnostics& list, const char* code, const SourceSpan& where, std::string element,
+            std::string message, std::string remedy, Severity severity) {
+    list.push_back({severity, code, where, std::move(element), std::move(message), std::move(remedy)});
+}
+
+DurationDraft effective_duration(const PlaceDraft& p) {
+    if (p.duration) {
+        return *p.duration;
+    }
+    DurationDraft d;
+    d.kind = p.action.valid() ? DurationKind::kAuto : DurationKind::kConstant;
+    return d;
+}
+namespace {
+
+bool same_duration(const DurationDraft& x, const DurationDraft& y) {
+    return x.kind == y.kind && x.a == y.a && x.b == y.b && x.sibling == y.sibling &&
+           (x.kind != DurationKind::kDistribution ||
+            (x.distribution == y.distribution && x.parameters == y.parameters));
+}
+
+bool same_attributes(const PlaceDraft& x, const PlaceDraft& y) {
+    return std::equal(x.attributes.begin(), x.attributes.end(), y.attributes.begin(),
+                      y.attributes.end(), [](const AttributeDraft& a, const AttributeDraft& b) {
+                          return a.name == b.name && a.type == b.type;
+                      });
+}
+
+class Lowering {
+   public:
+    Lowering(const NetDraft& draft, Diagnostics& defects) : defects_(defects) { out_.net = draft; }
+
+    Lowered run() {
+        if (!indices_are_valid()) {
+            return std::move(out_);
+        }
+        fuse();
+        meet();
+        hold();
+        refine();
+        return std::move(out_);
+    }
+
+   private:
+    NetDraft& net() { return out_.net; }
+
+    bool indices_are_valid() {
+        const std::size_t before = defects_.size();
+        const auto bad = [&](const char* what) {
+            report(defects_, "unknown-index", {}, "net " + net().name,
+                   std::string("a ") + what + " is mentioned that the draft does not have",
+                   "declare it before it is used");
+        };
+        const auto places = static_cast<std::uint32_t>(net().places.size());
+        const auto transitions = static_cast<std::uint32_t>(net().transitions.size());
+        each_place_mention(net(), [&](std::uint32_t p) {
+            if (p >= places) {
+                bad("place");
+            }
+        });
+        each_transition_mention(net(), [&](std::uint32_t t) {
+            if (t >= transitions) {
+                bad("transition");
+            }
+        });
+        for (const auto& list : net().fusions) {
+            for (const PlaceIndex p : list) {
+                if (p.value >= places) {
+                    bad("place");
+                }
+            }
+        }
+        for (const auto& list : net().rendezvous) {
+            for (const TransitionIndex t : list) {
+                if (t.value >= transitions) {
+                    bad("transition");
+                }
+            }
+        }
+        return defects_.size() == before;
+    }
+
+    // The classes that lists of indices join: every element's representative is its least member.
+    template <class Lists>
+    static std::vector<std::uint32_t> classes(const Lists& lists, std::size_t count) {
+        std::vector<std::uint32_t> root(count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            root[i] = i;
+        }
+        const auto find = [&](std::uint32_t i) {
+            while (root[i] != i) {
+                root[i] = root[root[i]];
+                i = root[i];
+            }
+            return i;
+        };
+        for (const auto& list : lists) {
+            for (const auto& other : list) {
+                const std::uint32_t a = find(list.front().value);
+                const std::uint32_t b = find(other.value);
+                root[std::max(a, b)] = std::min(a, b);
+            }
+        }
+        for (std::uint32_t i = 0; i < count; ++i) {
+            root[i] = find(i);
+        }
+        return root;
+    }
+
+    // Drops everything that is not its class's representative; gives old -> new.
+    template <class T>
+    static std::vector<std::uint32_t> compact(std::vector<T>& items,
+                                              const std::vector<std::uint32_t>& root) {
+        std::vector<std::uint32_t> map(root.size());
+        std::uint32_t next = 0;
+        for (std::uint32_t i = 0; i < root.size(); ++i) {
+            if (root[i] == i) {
+                map[i] = next;
+                if (next != i) {
+                    items[next] = std::move(items[i]);
+                }
+                ++next;
+            } else {
+                map[i] = map[root[i]];
+            }
+        }
+        items.resize(next);
+        return map;
+    }
+
+    void fuse() {
+        const auto root = classes(net().fusions, net().places.size());
+        // Siblings are compared by what they become.
+        for (PlaceDraft& p : net().places) {
+            if (p.duration && p.duration->sibling.valid()) {
+                p.duration->sibling.value = root[p.duration->sibling.value];
+            }
+        }
+        for (std::uint32_t i = 0; i < root.size(); ++i) {
+            if (root[i] != i) {
+                join(net().places[root[i]], net().places[i]);
+            }
+        }
+        std::vector<std::pair<std::string, std::uint32_t>> aliases;
+        for (std::uint32_t i = 0; i < root.size(); ++i) {
+            if (root[i] != i) {
+                aliases.emplace_back(net().places[i].path, i);
+            }
+        }
+        out_.place_map = compact(net().places, root);
+        for (auto& [path, index] : aliases) {
+            out_.place_aliases.emplace_back(std::move(path), out_.place_map[index]);
+        }
+        each_place_mention(net(), [&](std::uint32_t& p) {
+            // Siblings point to representatives already, which the map sends to the same place.
+            p = out_.place_map[p];
+        });
+        net().fusions.clear();
+    }
+
+    void join(PlaceDraft& keep, PlaceDraft& gone) {
+        const auto disagree = [&](const char* what) {
+            report(defects_, "fused-disagree", gone.where, "place " + gone.path,
+                   "fused with " + keep.path + ", but they disagree on " + what,
+                   std::string("give both the same ") + what);
+        };
+        if (!same_duration(effective_duration(keep), effective_duration(gone))) {
+            disagree("duration");
+        }
+        if (keep.discipline != gone.discipline || keep.key != gone.key ||
+            keep.keeps_order != gone.keeps_order) {
+            disagree("discipline");
+        }
+        if (!same_attributes(keep, gone)) {
+            disagree("attributes");
+        }
+        if (keep.action.valid() && gone.action.valid() && keep.action != gone.action) {
+            disagree("movement");
+        }
+        if (keep.capacity && gone.capacity && *keep.capacity != *gone.capacity) {
+            disagree("capacity");
+        }
+        if (!keep.capacity) {
+            keep.capacity = gone.capacity;
+        }
+        if (!keep.action.valid()) {
+            keep.action = gone.action;
+        }
+        keep.tokens.insert(keep.tokens.end(), gone.tokens.begin(), gone.tokens.end());
+        if (keep.caption.empty()) {
+            keep.caption = gone.caption;
+        }
+    }
+
+    void meet() {
+        const auto root = classes(net().rendezvous, net().transitions.size());
+        for (std::uint32_t i = 0; i < root.size(); ++i) {
+            if (root[i] != i) {
+                merge(net().transitions[root[i]], std::move(net().transitions[i]));
+            }
+        }
+        out_.transition_map = compact(net().transitions, root);
+        each_transition_mention(net(), [&](std::uint32_t& t) { t = out_.transition_map[t]; });
+        net().rendezvous.clear();
+    }
+
+    void merge(TransitionDraft& keep, TransitionDraft&& other) {
+        const auto once = [&](bool mine, bool theirs, const char* what) {
+            if (mine && theirs) {
+                report(defects_, "rendezvous-disagree", other.where, "transition " + other.path,
+                       "meets " + keep.path + ", and both state " + what,
+                       std::string("state ") + what + " in one of them");
+            }
+        };
+        once(keep.odds.has_value(), other.odds.has_value(), "odds");
+        once(keep.delay.has_value(), other.delay.has_value(), "a delay");
+        once(keep.holding.has_value(), other.holding.has_value(), "a holding time");
+        once(!keep.events.empty(), !other.events.empty(), "an event");
+        const auto shift = static_cast<std::uint32_t>(keep.variables.size());
+        each_expr(other, [&](Expr& e) {
+            e.rename_slots([&](Slot s) {
+                if (s.kind == static_cast<std::uint32_t>(SlotKind::kVariable)) {
+                    s.index += shift;
+                }
+                return s;
+            });
+        });
+        for (ArcDraft& arc : other.inputs) {
+            for (PatternDraft& pattern : arc.pattern) {
+                if (pattern.binds) {
+                    *pattern.binds += shift;
+                }
+            }
+            if (arc.time_left) {
+                *arc.time_left += shift;
+            }
+        }
+        const auto append = [](auto& to, auto& from) {
+            to.insert(to.end(), std::make_move_iterator(from.begin()),
+                      std::make_move_iterator(from.end()));
+        };
+        append(keep.variables, other.variables);
+        append(keep.inputs, other.inputs);
+        append(keep.outputs, other.outputs);
+        append(keep.assignments, other.assignments);
+        append(keep.raises, other.raises);
+        append(keep.events, other.events);
+        if (other.guard) {
+            if (keep.guard) {
+                Result<Expr, ExprError> both = Expr::binary(ExprOp::kAnd, std::move(*keep.guard),
+                                                            std::move(*other.guard));
+                if (both) {
+                    keep.guard = std::move(both).value();
+                } else {
+                    report(defects_, "type-mismatch", other.where, "transition " + other.path,
+                           both.error().message, "make the guard a bool");
+                }
+            } else {
+                keep.guard = std::move(other.guard);
+            }
+        }
+        keep.priority = std::max(keep.priority, other.priority);
+        if (other.odds) {
+            keep.odds = std::move(other.odds);
+        }
+        if (other.delay) {
+            keep.delay = std::move(other.delay);
+        }
+        if (other.holding) {
+            keep.holding = std::move(other.holding);
+        }
+        keep.path += "|" + other.path;
+    }
+
+    // t for d  =>  t.begin -> t.busy (d) -> t.end. Tests, guard, delay, event at the begin; outputs, assignments and
+    // raised events at the end. Variables travel as attributes of t.busy.
+    void hold() {
+        const std::size_t count = net().transitions.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!net().transitions[i].holding) {
+                continue;
+            }
+            TransitionDraft& begin = net().transitions[i];
+            TransitionDraft end;
+            end.path = begin.path + ".end";
+            end.caption = begin.caption;
+            end.where = begin.where;
+            end.priority = begin.priority;
+            end.variables = begin.variables;
+            end.outputs = std::move(begin.outputs);
+            end.assignments = std::move(begin.assignments);
+            end.raises = std::move(begin.raises);
+            begin.outputs.clear();
+            begin.assignments.clear();
+            begin.raises.clear();
+            PlaceDraft busy;
+            busy.path = begin.path + ".busy";
+            busy.caption = begin.caption;
+            busy.where = begin.where;
+            busy.busy = true;
+            busy.duration = std::move(begin.holding);
+            begin.holding.reset();
+            begin.path += ".begin";
+            const PlaceIndex place{static_cast<std::uint32_t>(net().places.size())};
+            OutputDraft into;
+            into.place = place;
+            into.where = begin.where;
+            ArcDraft out_of;
+            out_of.place = place;
+            out_of.where = begin.where;
+            for (std::uint32_t v = 0; v < begin.variables.size(); ++v) {
+                busy.attributes.push_back({begin.variables[v].name, begin.variables[v].type});
+                into.attributes.push_back(
+                    Expr::slot(slot(SlotKind::kVariable, v), begin.variables[v].type));
+                PatternDraft bind;
+                bind.attribute = v;
+                bind.binds = v;
+                out_of.pattern.push_back(bind);
+            }
+            each_expr(*busy.duration, [](Expr& e) {
+                e.rename_slots([](Slot s) {
+                    if (s.kind == static_cast<std::uint32_t>(SlotKind::kVariable)) {
+                        s.kind = static_cast<std::uint32_t>(SlotKind::kAttribute);
+                    }
+                    return s;
+                });
+            });
+            begin.outputs.push_back(std::move(into));
+            end.inputs.push_back(std::move(out_of));
+            net().places.push_back(std::move(busy));
+            net().transitions.push_back(std::move(end));
+        }
+    }
+
+    void refine() {
+        // Outer modules first: what they add to a place that is itself refined is refined in turn.
+        const std::size_t count = net().refinements.size();
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // depth, number
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const PlaceIndex place = net().refinements[k].place;
+            std::uint32_t depth = 0;
+            for (const RefinementDraft& other : net().refinements) {
+                depth += std::count(other.inside.begin(), other.inside.end(), place) != 0 ? 1 : 0;
+            }
+            order.emplace_back(depth, k);
+        }
+        std::sort(order.begin(), order.end());
+        for (const auto& [depth, k] : order) {
+            refine(net().refinements[k], k);
+        }
+        out_.refinements = std::move(net().refinements);
+        net().refinements.clear();
+    }
+
+    void refine(const RefinementDraft& r, std::uint32_t number) {
+        PlaceDraft& place = net().places[r.place.value];
+        if (place.duration && place.duration->kind != DurationKind::kOpen) {
+            report(defects_, "refined-not-open", place.where, "place " + place.path,
+                   "runs a module, so its duration is the module's",
+                   "leave out `takes`, or do not run a module here");
+        }
+        if (place.action.valid()) {
+            report(defects_, "refined-not-open", place.where, "place " + place.path,
+                   "both runs a module and does a movement", "choose one of them");
+        }
+        if (r.start.empty() || r.finish.empty()) {
+            report(defects_, "refined-not-open", r.where, "place " + place.path,
+                   "its module has no way in or no way out", "name a start and a finish place");
+            return;
+        }
+        // The shadow itself is always there; whether it is ready is asked of the finish.
+        place.duration = DurationDraft{};
+        if (!place.capacity) {
+            place.capacity = 1;  // one activity at a time: two in one module would mix
+        }
+        for (const InitialToken& token : place.tokens) {
+            for (const PlaceIndex s : r.start) {
+                InitialToken begin;
+                begin.count = token.count;
+                net().places[s.value].tokens.push_back(begin);
+            }
+        }
+        for (std::uint32_t t = 0; t < net().transitions.size(); ++t) {
+            TransitionDraft& transition = net().transitions[t];
+            std::vector<ArcDraft> more;
+            bool leaves = false;
+            for (const ArcDraft& arc : transition.inputs) {
+                if (arc.place != r.place) {
+                    continue;
+                }
+                if (arc.kind == ArcKind::kTake || arc.kind == ArcKind::kRead ||
+                    arc.kind == ArcKind::kTakeAll) {
+                    for (const PlaceIndex f : r.finish) {
+                        ArcDraft finish = arc;
+                        finish.place = f;
+                        finish.pattern.clear();
+                        more.push_back(std::move(finish));
+                    }
+                    leaves = leaves || arc.kind != ArcKind::kRead;
+                } else if (arc.kind == ArcKind::kTakeNow || arc.kind == ArcKind::kTakeAllNow) {
+                    for (const PlaceIndex inside : r.inside) {
+                        ArcDraft clear = arc;
+                        clear.kind = ArcKind::kTakeAllNow;
+                        clear.weight = 1;
+                        clear.place = inside;
+                        clear.pattern.clear();
+                        clear.time_left.reset();
+                        more.push_back(std::move(clear));
+                    }
+                }
+            }
+            for (ArcDraft& arc : transition.inputs) {
+                if (arc.place == r.place && arc.kind == ArcKind::kUnlessReady) {
+                    arc.place = r.finish.front();
+                }
+            }
+            transition.inputs.insert(transition.inputs.end(), more.begin(), more.end());
+            std::vector<OutputDraft> starts;
+            for (const OutputDraft& out : transition.outputs) {
+                if (out.place == r.place) {
+                    for (const PlaceIndex s : r.start) {
+                        OutputDraft start;
+                        start.place = s;
+                        start.weight = out.weight;
+                        start.where = out.where;
+                        starts.push_back(std::move(start));
+                    }
+                }
+            }
+            transition.outputs.insert(transition.outputs.end(), starts.begin(), starts.end());
+            if (leaves) {
+                out_.clean.push_back({t, number});
+            }
+        }
+        // The ready tokens of the shadow are those of its finish.
+        const auto ready = static_cast<std::uint32_t>(SlotKind::kReady);
+        each_expr(net(), [&](Expr& e) {
+            e.rename_slots([&](Slot s) {
+                if (s.kind == ready && s.index == r.place.value) {
+                    s.index = r.finish.front().value;
+                }
+                return s;
+            });
+        });
+        each_formula(net(), [&](Formula& f) {
+            for (Formula::Node& n : f.nodes) {
+                if (n.op == FormulaOp::kReady && n.index == r.place.value) {
+                    n.index = r.finish.front().value;
+                }
+            }
+        });
+    }
+
+    Lowered out_;
+    Diagnostics& defects_;
+};
+
+}  // namespace
+
+Lowered lower_draft(const NetDraft& draft, Diagnostics& defects) {
+    return Lowering(draft, defects).run();
+}
+
+Checked<NetDraft> lower(const NetDraft& draft) {
+    Diagnostics defects;
+    Lowered lowered = lower_draft(draft, defects);
+    if (has_errors(defects)) {
+        return Unexpected(std::move(defects));
+    }
+    return std::move(lowered.net);
+}
+
+}  // namespace puppetri::net
