@@ -5,6 +5,7 @@
 
 #include "puppetri/base/elementary.h"
 #include "puppetri/base/expr.h"
+#include "puppetri/base/hash.h"
 #include "puppetri/base/require.h"
 
 namespace puppetri {
@@ -301,6 +302,14 @@ bool Code::is_constant(ProgramIndex program, Value& value) const {
     }
     value = i[0].literal;
     return true;
+}
+
+std::uint64_t Code::hash() const {
+    Hash64 h;
+    for (const Instruction& i : instructions_) {
+        h.add_u64(i.op).add_u64(i.kind).add_u64(i.index).add_i64(i.literal);
+    }
+    return h.value();
 }
 
 Evaluated Code::evaluate(ProgramIndex program, const Reader& reader) const {

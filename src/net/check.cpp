@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Everything that can be wrong with a draft after lowering, each with a code, its element and a remedy. Types come
-// first: what passes here can be compiled and evaluated without another look.
+// Everything that can be wrong with a draft after lowering, each with a code, its element and a
+// remedy. Types come first: what passes here can be compiled and evaluated without another look.
 #include "check.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ bool less(ValueType type, Value a, Value b) {
 }
 
 class Check {
-   public:
+ public:
     Check(const NetDraft& net, Diagnostics& defects) : net_(net), defects_(defects) {}
 
     void run() {
@@ -40,7 +40,7 @@ class Check {
         check_formulas();
     }
 
-   private:
+ private:
     // What an expression may read, and where.
     struct Scope {
         const char* code = "type-mismatch";
@@ -116,7 +116,8 @@ class Check {
                 }
                 type = (*s.attributes)[n.slot.index].type;
                 break;
-            default: return missing("something unknown");
+            default:
+                return missing("something unknown");
         }
         if (type != n.type) {
             fail(s, "type-mismatch",
@@ -205,7 +206,9 @@ class Check {
                     fail(s, "negative-duration", "a negative time", "give 0 or more");
                 }
                 break;
-            case DurationKind::kExpression: want(d.a, s, is_time(d.a.type()), "a time"); break;
+            case DurationKind::kExpression:
+                want(d.a, s, is_time(d.a.type()), "a time");
+                break;
             case DurationKind::kInterval:
                 want(d.a, s, is_time(d.a.type()), "a time");
                 want(d.b, s, is_time(d.b.type()), "a time");
@@ -227,7 +230,7 @@ class Check {
                     if (p.is_literal()) {
                         const Value v = p.literal_value();
                         values.push_back(p.type().kind == ValueKind::kReal ? real_of_value(v)
-                                         : is_time(p.type()) ? SimTime{v}.seconds()
+                                         : is_time(p.type())               ? SimTime{v}.seconds()
                                                              : static_cast<double>(v));
                     }
                 }
@@ -271,8 +274,9 @@ class Check {
                 fail(s, "key-missing", "least and most need something to compare",
                      "name an attribute or an expression over attributes");
             } else {
-                want(p.key, key, is_number(p.key.type()) || is_time(p.key.type()) ||
-                                     p.key.type().kind == ValueKind::kEnum,
+                want(p.key, key,
+                     is_number(p.key.type()) || is_time(p.key.type()) ||
+                         p.key.type().kind == ValueKind::kEnum,
                      "a number or a time");
             }
         }
@@ -292,8 +296,8 @@ class Check {
             fail(s, "net-too-large", "too many tokens", "use fewer");
         }
         if (p.capacity && initial > *p.capacity) {
-            fail(s, "capacity-exceeded",
-                 "starts with more tokens than it holds at most", "raise the bound");
+            fail(s, "capacity-exceeded", "starts with more tokens than it holds at most",
+                 "raise the bound");
         }
     }
 
@@ -314,9 +318,10 @@ class Check {
                 if (*pattern.binds >= t.variables.size()) {
                     fail(s, "unknown-index", "binds an unknown variable", "declare it");
                 } else if (t.variables[*pattern.binds].type != type) {
-                    fail(s, "type-mismatch",
-                         t.variables[*pattern.binds].name + " is of another type than the attribute",
-                         "use another variable");
+                    fail(
+                        s, "type-mismatch",
+                        t.variables[*pattern.binds].name + " is of another type than the attribute",
+                        "use another variable");
                 } else if (!binds_allowed && !bound[*pattern.binds]) {
                     fail(s, "pattern-on-attribute",
                          "`all` and `unless` take no single token that could be bound",
@@ -330,8 +335,10 @@ class Check {
             }
         }
         if (arc.time_left) {
-            if (*arc.time_left >= t.variables.size() || !is_time(t.variables[*arc.time_left].type)) {
-                fail(s, "type-mismatch", "the time left is a time", "bind it to a variable of time");
+            if (*arc.time_left >= t.variables.size() ||
+                !is_time(t.variables[*arc.time_left].type)) {
+                fail(s, "type-mismatch", "the time left is a time",
+                     "bind it to a variable of time");
             } else if (arc.kind != ArcKind::kTakeNow && arc.kind != ArcKind::kReadNow) {
                 fail(s, "pattern-on-attribute", "only `now` and `while` see the time left",
                      "write `now` before the place");
@@ -350,11 +357,11 @@ class Check {
         s.bound = &bound;
         const auto weight = [&](std::int64_t w, const SourceSpan& where, PlaceIndex p) {
             if (w < 1 || w > 0x3FFF'FFFF) {
-                report(defects_, w < 1 ? "weight-not-positive" : "net-too-large",
-                       where.line != 0 ? where : t.where, s.element,
-                       "the arc to " + net_.places[p.value].path + " has weight " +
-                           std::to_string(w),
-                       "give a whole number above 0, or leave the arc out");
+                report(
+                    defects_, w < 1 ? "weight-not-positive" : "net-too-large",
+                    where.line != 0 ? where : t.where, s.element,
+                    "the arc to " + net_.places[p.value].path + " has weight " + std::to_string(w),
+                    "give a whole number above 0, or leave the arc out");
             }
         };
         for (const ArcDraft& arc : t.inputs) {
@@ -454,6 +461,11 @@ class Check {
                 sibling[i] = PlaceIndex::kNone;
                 continue;
             }
+            if (effective_duration(net_.places[sibling[i]]).kind == DurationKind::kOpen) {
+                report(defects_, "as-without-sibling", p.where, "place " + p.path,
+                       "lasts as " + net_.places[sibling[i]].path + ", which is open",
+                       "make it open too, or give it a duration");
+            }
             const bool unready_start =
                 std::any_of(p.tokens.begin(), p.tokens.end(),
                             [](const InitialToken& token) { return !token.ready; });
@@ -486,8 +498,7 @@ class Check {
                     report(defects_, "as-without-sibling",
                            out.where.line != 0 ? out.where : t.where, "transition " + t.path,
                            "gives a token to " + net_.places[out.place.value].path +
-                               ", which lasts as " + net_.places[wanted].path +
-                               ", but none there",
+                               ", which lasts as " + net_.places[wanted].path + ", but none there",
                            "give one to " + net_.places[wanted].path + " too");
                 }
             }

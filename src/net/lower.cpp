@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Composition as rewriting of the draft: fused places become one, a rendezvous becomes one transition, `for d` becomes
-// begin -> busy -> end, and a refined place gets its module's start and finish into its arcs. Afterwards nothing of
-// these is left, so that simulator and prover never hear of them.
+// Composition as rewriting of the draft: fused places become one, a rendezvous becomes one
+// transition, `for d` becomes begin -> busy -> end, and a refined place gets its module's start and
+// finish into its arcs. Afterwards nothing of these is left, so that simulator and prover never
+// hear of them.
 #include "lower.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ namespace puppetri::net {
 
 void report(Diagnostics& list, const char* code, const SourceSpan& where, std::string element,
             std::string message, std::string remedy, Severity severity) {
-    list.push_back({severity, code, where, std::move(element), std::move(message), std::move(remedy)});
+    list.push_back(
+        {severity, code, where, std::move(element), std::move(message), std::move(remedy)});
 }
 
 DurationDraft effective_duration(const PlaceDraft& p) {
@@ -41,7 +43,7 @@ bool same_attributes(const PlaceDraft& x, const PlaceDraft& y) {
 }
 
 class Lowering {
-   public:
+ public:
     Lowering(const NetDraft& draft, Diagnostics& defects) : defects_(defects) { out_.net = draft; }
 
     Lowered run() {
@@ -55,7 +57,7 @@ class Lowering {
         return std::move(out_);
     }
 
-   private:
+ private:
     NetDraft& net() { return out_.net; }
 
     bool indices_are_valid() {
@@ -261,8 +263,8 @@ class Lowering {
         append(keep.events, other.events);
         if (other.guard) {
             if (keep.guard) {
-                Result<Expr, ExprError> both = Expr::binary(ExprOp::kAnd, std::move(*keep.guard),
-                                                            std::move(*other.guard));
+                Result<Expr, ExprError> both =
+                    Expr::binary(ExprOp::kAnd, std::move(*keep.guard), std::move(*other.guard));
                 if (both) {
                     keep.guard = std::move(both).value();
                 } else {
@@ -286,8 +288,8 @@ class Lowering {
         keep.path += "|" + other.path;
     }
 
-    // t for d  =>  t.begin -> t.busy (d) -> t.end. Tests, guard, delay, event at the begin; outputs, assignments and
-    // raised events at the end. Variables travel as attributes of t.busy.
+    // t for d  =>  t.begin -> t.busy (d) -> t.end. Tests, guard, delay, event at the begin;
+    // outputs, assignments and raised events at the end. Variables travel as attributes of t.busy.
     void hold() {
         const std::size_t count = net().transitions.size();
         for (std::size_t i = 0; i < count; ++i) {

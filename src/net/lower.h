@@ -12,8 +12,8 @@
 namespace puppetri::net {
 
 struct Lowered {
-    NetDraft net;                            // no fusions, rendezvous, holdings, refinements left
-    std::vector<std::uint32_t> place_map;    // of the draft -> of `net`
+    NetDraft net;                          // no fusions, rendezvous, holdings, refinements left
+    std::vector<std::uint32_t> place_map;  // of the draft -> of `net`
     std::vector<std::uint32_t> transition_map;
     std::vector<std::pair<std::string, std::uint32_t>> place_aliases;  // old names of fused places
     // Kept from the refinements: the way out of a module must leave it empty.

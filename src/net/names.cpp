@@ -47,7 +47,8 @@ std::string_view Names::path(std::uint32_t i) const {
 
 ElementView Names::operator[](std::uint32_t i) const {
     const Entry& e = entries_[i];
-    return {path(i), std::string_view(text_).substr(e.caption, e.end - e.caption),
+    return {path(i),
+            std::string_view(text_).substr(e.caption, e.end - e.caption),
             {files_[e.file], e.line, e.column, e.length}};
 }
 

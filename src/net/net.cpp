@@ -30,7 +30,9 @@ ElementView element(const Names& names, std::uint32_t i) {
 }  // namespace
 
 ElementView Net::place(PlaceIndex p) const { return element(tables_->places, p.value); }
-ElementView Net::transition(TransitionIndex t) const { return element(tables_->transitions, t.value); }
+ElementView Net::transition(TransitionIndex t) const {
+    return element(tables_->transitions, t.value);
+}
 ElementView Net::datum(DatumIndex d) const { return element(tables_->data, d.value); }
 ElementView Net::event(EventIndex e) const { return element(tables_->events, e.value); }
 
@@ -52,7 +54,8 @@ TransitionIndex Net::transition_of_draft(TransitionIndex t) const {
 
 ActionIndex Net::action(PlaceIndex p) const {
     PUP_REQUIRE(p.value < place_count());
-    const std::uint32_t rich = tables_->place_rich.empty() ? kNoIndex : tables_->place_rich[p.value];
+    const std::uint32_t rich =
+        tables_->place_rich.empty() ? kNoIndex : tables_->place_rich[p.value];
     return rich == kNoIndex ? ActionIndex{} : tables_->rich[rich].action;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks over a draft: every expression, every mention of a place or a transition. One list of members, so that no
-// rewriting forgets one.
+// Walks over a draft: every expression, every mention of a place or a transition. One list of
+// members, so that no rewriting forgets one.
 #pragma once
 #include "puppetri/net/draft.h"
 

@@ -177,9 +177,7 @@ class Code {
     Evaluated evaluate(ProgramIndex program, const Reader& reader) const;
     // The literal, if the whole program is one.
     bool is_constant(ProgramIndex program, Value& value) const;
-    std::size_t bytes() const {
-        return instructions_.size() * sizeof(Instruction) + starts_.size() * 4;
-    }
+    std::uint64_t hash() const;
     bool operator==(const Code&) const = default;
 
  private:

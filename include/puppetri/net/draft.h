@@ -189,7 +189,7 @@ struct ScheduledEvent {
     SourceSpan where;
 };
 
-// A marking that is an end and no deadlock: every formula of the list holds.
+// Markings that are an end and no deadlock: those in which the condition of one of the list holds.
 struct FinalMarkingDraft {
     Formula condition;
     SourceSpan where;

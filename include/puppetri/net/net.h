@@ -94,8 +94,8 @@ class Net {
     ActionIndex action(PlaceIndex p) const;  // invalid: none
     // No duration, delay, holding or schedule anywhere: one firing per beat.
     bool paced() const;
-    // Data, events, schedule, rules, states, final markings, host atoms: the lowered draft without its places and
-    // transitions; indices in it are those of the net.
+    // Data, events, schedule, rules, states, final markings, host atoms: the lowered draft without
+    // its places and transitions; indices in it are those of the net.
     const NetDraft& declarations() const;
     // Of the whole net, names and all: equal nets have equal hashes.
     std::uint64_t hash() const;
@@ -104,7 +104,9 @@ class Net {
     // Rounding to ticks and the like: not an error.
     const Diagnostics& notes() const;
 
-    const NetTables& tables() const { return *tables_; }  // net/tables.h: for the engine and provers
+    const NetTables& tables() const {
+        return *tables_;
+    }  // net/tables.h: for the engine and provers
 
  private:
     friend Checked<Net> compile(const NetDraft& draft);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The inner tables of a compiled net: what the engine walks. Plain transitions (all arcs on places without records,
-// no guard, delay, event, data) need only `takes`, `gives` and the watchers; all else is in `Special`, one per
-// transition that has any of it.
+// The inner tables of a compiled net: what the engine walks. Plain transitions (all arcs on places
+// without records, no guard, delay, event, data) need only `takes`, `gives` and the watchers; all
+// else is in `Special`, one per transition that has any of it.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -19,8 +19,8 @@ inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
 struct DurationTable {
     DurationKind kind = DurationKind::kConstant;
     DistributionKind distribution = DistributionKind::kConstant;
-    std::int64_t ticks = 0;        // of kConstant
-    ProgramIndex a, b;             // of kExpression, kInterval
+    std::int64_t ticks = 0;  // of kConstant
+    ProgramIndex a, b;       // of kExpression, kInterval
     struct Parameter {
         ProgramIndex program;
         ValueKind kind = ValueKind::kReal;
@@ -72,13 +72,14 @@ struct DelayTable {
 };
 struct Special {
     std::uint32_t transition = 0;
-    bool searches = false;      // patterns or time left: marked only if a binding is found
-    bool depends = false;       // marked by more than counts: looked at again when what it reads changes
-    std::vector<ArcTable> arcs;        // on rich places, and `all`; in source order, `all` last
-    std::vector<OutputTable> outputs;  // on rich places, or with a duration of their own; siblings first
+    bool searches = false;  // patterns or time left: marked only if a binding is found
+    bool depends = false;  // marked by more than counts: looked at again when what it reads changes
+    std::vector<ArcTable> arcs;  // on rich places, and `all`; in source order, `all` last
+    std::vector<OutputTable>
+        outputs;  // on rich places, or with a duration of their own; siblings first
     std::uint32_t variables = 0;
     ProgramIndex guard;
-    ProgramIndex odds;          // invalid: constant
+    ProgramIndex odds;  // invalid: constant
     bool odds_is_int = false;
     double constant_odds = 1;
     std::vector<std::uint32_t> events;
@@ -86,15 +87,16 @@ struct Special {
     std::uint32_t delay = kNoIndex;
     std::vector<std::pair<std::uint32_t, ProgramIndex>> assignments;
     std::vector<std::uint32_t> must_be_clean;  // refinements
-    std::vector<Weighted> degree;  // of multi-server delays: how often enabled
+    std::vector<Weighted> degree;              // of multi-server delays: how often enabled
 };
 
 // Paths, captions and positions of many elements in few allocations.
 class Names {
-   public:
+ public:
     void reserve(std::uint32_t count) { entries_.reserve(count); }
     void add(std::string_view path, std::string_view caption, const SourceSpan& where);
-    // Sorts by path; to be called once, after the last add. Other names (of fused places) may be added for `find`.
+    // Sorts by path; to be called once, after the last add. Other names (of fused places) may be
+    // added for `find`.
     void sort(std::vector<std::pair<std::string, std::uint32_t>> aliases = {});
 
     std::uint32_t size() const { return static_cast<std::uint32_t>(entries_.size()); }
@@ -105,7 +107,7 @@ class Names {
     std::uint32_t rank(std::uint32_t i) const { return ranks_[i]; }
     bool operator==(const Names&) const = default;
 
-   private:
+ private:
     struct Entry {
         std::uint32_t path = 0, caption = 0, end = 0;  // offsets in text_
         std::uint32_t file = 0, line = 0, column = 0, length = 1;
@@ -130,17 +132,18 @@ struct NetTables {
 
     // Places.
     std::vector<PlaceKind> place_kind;
-    std::vector<std::uint32_t> place_duration;  // of kTimed and kRich: number in `durations`; kNoIndex: 0
-    std::vector<std::uint32_t> place_rich;      // empty, or per place the number in `rich`
-    Rows<Watcher> ready_watchers;               // of the number of ready tokens
-    Rows<Watcher> total_watchers;               // of the number of tokens (never of kCount: there both are one)
-    Rows<std::uint32_t> place_dependents;       // transitions to look at again when the place changes
+    std::vector<std::uint32_t>
+        place_duration;  // of kTimed and kRich: number in `durations`; kNoIndex: 0
+    std::vector<std::uint32_t> place_rich;  // empty, or per place the number in `rich`
+    Rows<Watcher> ready_watchers;           // of the number of ready tokens
+    Rows<Watcher> total_watchers;  // of the number of tokens (never of kCount: there both are one)
+    Rows<std::uint32_t> place_dependents;  // transitions to look at again when the place changes
     Rows<std::uint32_t> datum_dependents;
     std::vector<DurationTable> durations;
     std::vector<RichPlaceTable> rich;
-    std::vector<std::int64_t> fifo_ticks;       // the constant durations that many tokens share
+    std::vector<std::int64_t> fifo_ticks;  // the constant durations that many tokens share
     std::uint32_t duration_streams = 0, token_streams = 0;
-    std::vector<std::uint32_t> stream_place;    // duration stream -> place
+    std::vector<std::uint32_t> stream_place;  // duration stream -> place
     std::vector<std::uint32_t> token_stream_place;
 
     // Transitions.

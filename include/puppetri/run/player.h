@@ -74,7 +74,8 @@ class Player {
     Player(Player&&) noexcept;
     Player& operator=(Player&&) noexcept;
 
-    // Events of a file, in its order; times before now are taken now. Before or during a run.
+    // Events of a file, in its order. Before a run, or during it: then times that have been played
+    // become the next tick.
     void schedule(std::span<const OutsideEvent> events);
     // An event from a person or a program, live: it occurs in the first tick that has not been
     // played yet.

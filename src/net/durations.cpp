@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// How long a token or a delay lasts, and what expressions read. Drawn from the element's own
+// stream; a chooser that is not random hears what the stream says and may answer otherwise.
+#include <algorithm>
+#include <cmath>
+
+#include "puppetri/base/distribution.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/base/rational.h"
+#include "puppetri/base/require.h"
+#include "puppetri/net/engine.h"
+
+namespace puppetri::net {
+
+namespace {
+constexpr std::int64_t kOpen = -1;
+constexpr std::size_t kMostInline = 16;
+}  // namespace
+
+Value Engine::read(std::uint32_t kind, std::uint32_t index) const {
+    switch (static_cast<SlotKind>(kind)) {
+        case SlotKind::kDatum:
+            return state_.data[index];
+        case SlotKind::kVariable:
+            return variables_[index];
+        case SlotKind::kCount:
+            return state_.counts[index].total;
+        case SlotKind::kReady:
+            return state_.counts[index].ready;
+        case SlotKind::kAttribute:
+            return attributes_[index];
+    }
+    return 0;
+}
+
+bool Engine::evaluate(ProgramIndex program, Value& out) {
+    const Evaluated e = tables_->code.evaluate(program, *this);
+    out = e.value;
+    return e.fault == EvalFault::kNone;
+}
+
+bool Engine::draw_place(std::uint32_t p, std::int64_t& ticks) {
+    const std::uint32_t number = tables_->place_duration[p];
+    if (number == kNoIndex) {
+        ticks = 0;
+        return true;
+    }
+    const DurationTable& d = tables_->durations[number];
+    switch (d.kind) {
+        case DurationKind::kConstant:
+            ticks = d.ticks;
+            return true;
+        case DurationKind::kOpen:
+            ticks = kOpen;
+            return true;
+        case DurationKind::kAuto:
+            if (options_.host == nullptr) {
+                fail_place(p, "action-needs-host",
+                           "its duration is asked from a movement, and nobody performs movements",
+                           "run it as a scene, or give it a duration");
+                return false;
+            }
+            ticks = kOpen;  // add_token asks
+            return true;
+        case DurationKind::kAs:
+            ticks = sibling_ticks_[d.sibling];
+            return true;
+        default:
+            break;
+    }
+    std::uint64_t none = 0;
+    const bool streams = d.stream != kNoIndex;
+    return draw(d, streams ? duration_keys_[d.stream] : 0,
+                streams ? state_.duration_draws[d.stream] : none, ChoiceKind::kDuration, p, ticks);
+}
+
+bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& count, ChoiceKind kind,
+                  std::uint32_t element, std::int64_t& ticks) {
+    const auto wrong = [&](const char* what) {
+        const bool place = kind == ChoiceKind::kDuration;
+        if (place) {
+            fail_place(element, "negative-duration", what, "give 0 or more");
+        } else {
+            fail_transition(element, "negative-duration", what, "give 0 or more");
+        }
+        return false;
+    };
+    if (d.kind == DurationKind::kConstant) {
+        ticks = d.ticks;
+        return true;
+    }
+    if (d.kind == DurationKind::kExpression) {
+        if (!evaluate(d.a, ticks) || ticks < 0) {
+            return wrong("a duration is negative or no number");
+        }
+        return true;
+    }
+    Choice choice;
+    choice.kind = kind;
+    choice.element = element;
+    if (d.kind == DurationKind::kInterval) {
+        Value low = 0, high = 0;
+        if (!evaluate(d.a, low) || !evaluate(d.b, high) || low < 0) {
+            return wrong("a duration is negative or no number");
+        }
+        if (high < low) {
+            return wrong("the interval ends before it begins");
+        }
+        RandomStream stream{key, count};
+        ticks = stream.between(low, high);
+        count = stream.count;
+        choice.kind = ChoiceKind::kInterval;
+        choice.low = {low};
+        choice.high = {high};
+    } else {
+        double room[kMostInline];
+        std::span<const double> parameters = d.constants;
+        std::vector<double> many;
+        if (d.constants.size() != d.parameters.size()) {
+            double* to = room;
+            if (d.parameters.size() > kMostInline) {
+                many.resize(d.parameters.size());
+                to = many.data();
+            }
+            for (std::size_t i = 0; i < d.parameters.size(); ++i) {
+                Value v = 0;
+                if (!evaluate(d.parameters[i].program, v)) {
+                    return wrong("a parameter of its distribution cannot be computed");
+                }
+                to[i] = d.parameters[i].kind == ValueKind::kReal   ? real_of_value(v)
+                        : d.parameters[i].kind == ValueKind::kTime ? SimTime{v}.seconds()
+                                                                   : static_cast<double>(v);
+            }
+            parameters = {to, d.parameters.size()};
+            if (!check(d.distribution, parameters)) {
+                return wrong("the parameters do not fit its distribution");
+            }
+        }
+        RandomStream stream{key, count};
+        const double seconds = d.distribution == DistributionKind::kExponential
+                                   ? -parameters[0] * puppetri::log(stream.uniform())
+                                   : sample(d.distribution, parameters, stream);
+        count = stream.count;
+        const double exact = seconds * static_cast<double>(kTicksPerSecond);
+        if (!(exact >= -0.5)) {
+            return wrong("a drawn duration is negative or no number");
+        }
+        if (!(exact < 9.2e18)) {
+            return wrong("a drawn duration goes beyond the end of time");
+        }
+        ticks = static_cast<std::int64_t>(std::nearbyint(exact));
+        if (!random_) {
+            const Support s = support(d.distribution, parameters);
+            const auto bound = [](double x) {
+                const auto t = to_ticks(x);
+                return t ? t->time : SimTime::never();
+            };
+            choice.low = {std::max<std::int64_t>(0, bound(s.low).ticks)};
+            choice.high = bound(s.high);
+        }
+    }
+    if (!random_) {
+        choice.drawn = {ticks};
+        ticks = chooser_->choose(choice);
+        PUP_REQUIRE(ticks >= choice.low.ticks && ticks <= choice.high.ticks);
+    }
+    return true;
+}
+
+}  // namespace puppetri::net

@@ -1,0 +1,638 @@
+// SPDX-License-Identifier: MIT
+// The heart: who may fire, who does, what it changes, and when time goes on. Transitions are
+// counted down: each knows how many of its conditions on counts do not hold, and a place tells only
+// those whose threshold it crosses. What is not plain is in special.cpp, binding.cpp, tokens.cpp,
+// events.cpp.
+#include "puppetri/net/engine.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "heap.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/base/require.h"
+
+namespace puppetri::net {
+
+namespace {
+
+constexpr std::uint32_t kFresh = 1, kRaced = 2, kStatus = 3;
+
+bool earlier(const Pending& a, const Pending& b) { return a.at < b.at; }
+
+}  // namespace
+
+void PendingRing::grow() {
+    std::vector<Pending> bigger(items.empty() ? 4 : 2 * items.size());
+    for (std::uint32_t i = 0; i < size; ++i) {
+        bigger[i] = at(i);
+    }
+    items.swap(bigger);
+    head = 0;
+}
+
+void PendingHeap::push(const Pending& p) { heap_push<4>(items, p, earlier); }
+void PendingHeap::pop() { heap_pop<4>(items, earlier); }
+
+Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
+    : net_(&net),
+      tables_(&net.tables()),
+      chooser_(&chooser),
+      random_(chooser.draws_from_streams()),
+      options_(options) {
+    const NetTables& n = *tables_;
+    const std::uint64_t seed = options.seed;
+    ticket_keys_.resize(n.transitions.size());
+    for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
+        ticket_keys_[t] = stream_key(seed, n.transitions.path(t), "ticket");
+    }
+    for (const std::uint32_t p : n.stream_place) {
+        duration_keys_.push_back(stream_key(seed, n.places.path(p), "duration"));
+    }
+    for (const std::uint32_t p : n.token_stream_place) {
+        token_keys_.push_back(stream_key(seed, n.places.path(p), "token"));
+    }
+    for (const DelayTable& d : n.delays) {
+        delay_keys_.push_back(stream_key(seed, n.transitions.path(d.transition), "delay"));
+    }
+    dependents_ = !n.place_dependents.items.empty();
+    std::uint32_t variables = 0;
+    for (std::uint32_t s = 0; s < n.specials.size(); ++s) {
+        const Special& special = n.specials[s];
+        variables = std::max(variables, special.variables);
+        if (special.delay != kNoIndex && n.delays[special.delay].memory == DelayMemory::kResample) {
+            resampled_.push_back(s);
+        }
+    }
+    variables_.resize(variables);
+    bound_.resize(variables);
+    for (const DurationTable& d : n.durations) {
+        if (d.kind == DurationKind::kAs) {
+            sibling_ticks_.resize(n.places.size());
+        }
+    }
+}
+
+void Engine::start() {
+    const NetTables& n = *tables_;
+    state_ = State{};
+    faulted_ = false;
+    state_.counts.resize(n.places.size());
+    for (const DatumDraft& d : n.declarations.data) {
+        state_.data.push_back(d.initial);
+    }
+    state_.rich.resize(n.rich.size());
+    state_.rings.resize(n.fifo_ticks.size());
+    state_.clocks.resize(n.delays.size());
+    state_.lotteries.resize(n.level_priority.size());
+    if (random_) {
+        state_.ticket_draws.resize(n.transitions.size());
+    }
+    state_.duration_draws.resize(n.duration_streams);
+    state_.delay_draws.resize(n.delays.size());
+    state_.token_draws.resize(n.token_streams);
+    rebuild();
+    start_marking();
+    for (const ScheduledEvent& s : n.declarations.schedule) {
+        Occurrence o;
+        o.at = s.at.ticks;
+        o.event = s.event.value;
+        o.every = s.every ? s.every->ticks : 0;
+        push_occurrence(o);
+    }
+    look_again(false);
+}
+
+void Engine::restore(State state) {
+    PUP_REQUIRE(state.counts.size() == tables_->places.size());
+    state_ = std::move(state);
+    faulted_ = false;
+    if (random_) {
+        state_.ticket_draws.resize(tables_->transitions.size());
+    }
+    rebuild();
+    look_again(false);
+    // Losers of this instant get their tickets back.
+    for (std::uint32_t l = 0; l < state_.lotteries.size(); ++l) {
+        std::vector<Ticket> tickets;
+        tickets.swap(state_.lotteries[l].tickets);
+        const double clock = state_.lotteries[l].clock;
+        for (Ticket ticket : tickets) {
+            Hot& h = hot_[ticket.transition];
+            if ((h.candidate & kStatus) != kFresh) {
+                continue;
+            }
+            leave(ticket.transition);
+            h.candidate |= kRaced;
+            ++levels_[l].live_raced;
+            ticket.stamp = h.candidate;
+            state_.lotteries[l].tickets.push_back(ticket);
+        }
+        std::sort(state_.lotteries[l].tickets.begin(), state_.lotteries[l].tickets.end(),
+                  [](const Ticket& a, const Ticket& b) { return a.key < b.key; });
+        state_.lotteries[l].clock = levels_[l].live_raced != 0 ? clock : 0;
+    }
+}
+
+State Engine::save() const {
+    State s = state_;
+    for (Lottery& l : s.lotteries) {
+        std::erase_if(l.tickets,
+                      [this](const Ticket& t) { return hot_[t.transition].candidate != t.stamp; });
+        std::sort(l.tickets.begin(), l.tickets.end(), [](const Ticket& a, const Ticket& b) {
+            return a.key != b.key ? a.key < b.key : a.transition < b.transition;
+        });
+    }
+    return s;
+}
+
+// Conditions, candidates and gates from the state.
+void Engine::rebuild() {
+    const NetTables& n = *tables_;
+    hot_.assign(n.transitions.size(), Hot{});
+    levels_.assign(n.level_priority.size(), Level{});
+    marked_.assign(n.specials.size(), 0);
+    touched_.assign(n.specials.size(), 0);
+    last_odds_.assign(n.specials.size(), 1);
+    touch_list_.clear();
+    instant_log_.clear();
+    const auto count = [this](std::span<const Watcher> row, std::uint32_t tokens) {
+        for (const Watcher& w : row) {
+            const bool holds =
+                (tokens >= w.threshold) != ((w.transition & Watcher::kInhibits) != 0);
+            hot_[w.transition & ~Watcher::kInhibits].unsatisfied += holds ? 0 : 1;
+        }
+    };
+    for (std::uint32_t p = 0; p < n.places.size(); ++p) {
+        count(n.ready_watchers.row(p), state_.counts[p].ready);
+        count(n.total_watchers.row(p), state_.counts[p].total);
+    }
+    for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
+        if (n.flags[t] != 0) {
+            touch(t);
+        } else if (hot_[t].unsatisfied == 0) {
+            enter(t);
+        }
+    }
+}
+
+void Engine::enter(std::uint32_t t) {
+    Hot& h = hot_[t];
+    h.candidate |= kFresh;
+    Level& l = levels_[tables_->level[t]];
+    if (l.fresh.size() > 2 * l.live_fresh + 64) {
+        std::erase_if(l.fresh,
+                      [this](const Fresh& f) { return hot_[f.transition].candidate != f.stamp; });
+    }
+    l.fresh.push_back({t, h.candidate});
+    ++l.live_fresh;
+}
+
+void Engine::leave(std::uint32_t t) {
+    Hot& h = hot_[t];
+    const std::uint32_t status = h.candidate & kStatus;
+    if (status == 0) {
+        return;
+    }
+    const std::uint32_t level = tables_->level[t];
+    Level& l = levels_[level];
+    if (status == kFresh) {
+        if (--l.live_fresh == 0) {
+            l.fresh.clear();
+        }
+    } else if (--l.live_raced == 0) {
+        state_.lotteries[level].tickets.clear();
+        state_.lotteries[level].clock = 0;
+    }
+    h.candidate = (h.candidate | kStatus) + 1;
+}
+
+void Engine::walk_watchers(std::span<const Watcher> row, std::uint32_t from, std::uint32_t to) {
+    for (const Watcher& w : row) {
+        const bool is = to >= w.threshold;
+        if ((from >= w.threshold) == is) {
+            continue;
+        }
+        const std::uint32_t t = w.transition & ~Watcher::kInhibits;
+        const bool gated = (tables_->flags[t] & kGated) != 0;
+        if (is != ((w.transition & Watcher::kInhibits) != 0)) {
+            if (--hot_[t].unsatisfied == 0) {
+                gated ? touch(t) : enter(t);
+            }
+        } else if (hot_[t].unsatisfied++ == 0) {
+            gated ? gate_closed(t) : leave(t);
+        }
+    }
+}
+
+inline void Engine::ready_changed(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
+    walk_watchers(tables_->ready_watchers.row(p), from, to);
+    if (dependents_) {
+        for (const std::uint32_t t : tables_->place_dependents.row(p)) {
+            touch(t);
+        }
+    }
+}
+
+inline void Engine::total_changed(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
+    walk_watchers(tables_->total_watchers.row(p), from, to);
+    if (dependents_) {
+        for (const std::uint32_t t : tables_->place_dependents.row(p)) {
+            touch(t);
+        }
+    }
+}
+
+void Engine::change_ready(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
+    ready_changed(p, from, to);
+}
+void Engine::change_total(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
+    total_changed(p, from, to);
+}
+
+// -- ties
+// ------------------------------------------------------------------------------------------------------------
+
+// The winner of the highest priority, no longer a candidate; kNoIndex: nobody can fire.
+std::uint32_t Engine::select() {
+    std::uint32_t level = 0;
+    const auto count = static_cast<std::uint32_t>(levels_.size());
+    while (level < count && levels_[level].live_fresh + levels_[level].live_raced == 0) {
+        ++level;
+    }
+    if (level == count) {
+        return kNoIndex;
+    }
+    Level& l = levels_[level];
+    if (!random_) {
+        return ask_tie(level);
+    }
+    if (l.live_fresh == 1 && l.live_raced == 0) {
+        // Alone: whatever its ticket, it wins and nobody is left to compare with. The draw is
+        // counted, not made.
+        while (hot_[l.fresh.back().transition].candidate != l.fresh.back().stamp) {
+            l.fresh.pop_back();
+        }
+        const std::uint32_t t = l.fresh.back().transition;
+        ++state_.ticket_draws[t];
+        leave(t);
+        return t;
+    }
+    return race(level);
+}
+
+// -ln(u) / odds, the t's next ticket.
+double Engine::ticket(std::uint32_t t) {
+    const double u = uniform_from_bits(random_bits(ticket_keys_[t], state_.ticket_draws[t]++));
+    const double e = -puppetri::log(u);
+    return (tables_->flags[t] & kHasOdds) != 0 ? e / odds(t) : e;
+}
+
+// Who became fireable since the last firing draws a ticket, counted from the lottery's clock; the
+// least wins and sets the clock; losers keep theirs. When no loser is left, the clock starts again
+// from 0: what has no partner to be compared with needs no common origin.
+std::uint32_t Engine::race(std::uint32_t level) {
+    Level& l = levels_[level];
+    Lottery& lottery = state_.lotteries[level];
+    const auto before = [this](const Ticket& a, const Ticket& b) {
+        return a.key != b.key ? a.key < b.key
+                              : tables_->path_hash[a.transition] < tables_->path_hash[b.transition];
+    };
+    for (const Fresh& f : l.fresh) {
+        Hot& h = hot_[f.transition];
+        if (h.candidate == f.stamp) {
+            h.candidate += kRaced - kFresh;
+            heap_push<2>(lottery.tickets,
+                         {lottery.clock + ticket(f.transition), f.transition, h.candidate}, before);
+        }
+    }
+    l.live_raced += l.live_fresh;
+    l.live_fresh = 0;
+    l.fresh.clear();
+    for (;;) {
+        const Ticket winner = lottery.tickets.front();
+        heap_pop<2>(lottery.tickets, before);
+        if (hot_[winner.transition].candidate == winner.stamp) {
+            lottery.clock = winner.key;
+            leave(winner.transition);
+            return winner.transition;
+        }
+    }
+}
+
+std::uint32_t Engine::ask_tie(std::uint32_t level) {
+    Level& l = levels_[level];
+    options_list_.clear();
+    for (const Fresh& f : l.fresh) {
+        if (hot_[f.transition].candidate == f.stamp) {
+            options_list_.push_back(f.transition);
+        }
+    }
+    // Tickets of a random run that goes on under this chooser are void.
+    for (const Ticket& ticket : state_.lotteries[level].tickets) {
+        if (hot_[ticket.transition].candidate == ticket.stamp) {
+            options_list_.push_back(ticket.transition);
+        }
+    }
+    std::sort(options_list_.begin(), options_list_.end(), [this](std::uint32_t a, std::uint32_t b) {
+        return tables_->transitions.rank(a) < tables_->transitions.rank(b);
+    });
+    std::int64_t answer = 0;
+    if (options_list_.size() > 1) {
+        odds_list_.clear();
+        for (const std::uint32_t t : options_list_) {
+            odds_list_.push_back(odds(t));
+        }
+        Choice choice;
+        choice.kind = ChoiceKind::kTie;
+        choice.element = kNoIndex;
+        choice.options = static_cast<std::uint32_t>(options_list_.size());
+        choice.transitions = options_list_;
+        choice.odds = odds_list_;
+        answer = chooser_->choose(choice);
+        PUP_REQUIRE(answer >= 0 && answer < static_cast<std::int64_t>(choice.options));
+    }
+    const std::uint32_t t = options_list_[static_cast<std::size_t>(answer)];
+    leave(t);
+    return t;
+}
+
+// -- firing
+// ----------------------------------------------------------------------------------------------------------
+
+void Engine::take_plain(std::uint32_t t) {
+    for (const Weighted& w : tables_->takes.row(t)) {
+        Counts& c = state_.counts[w.place];
+        const Counts was = c;
+        c.ready -= w.weight;
+        c.total -= w.weight;
+        ready_changed(w.place, was.ready, was.ready - w.weight);
+        if (tables_->place_kind[w.place] != PlaceKind::kCount) {
+            total_changed(w.place, was.total, was.total - w.weight);
+        }
+    }
+}
+
+void Engine::give_plain(std::uint32_t t) {
+    for (const Weighted& w : tables_->gives.row(t)) {
+        Counts& c = state_.counts[w.place];
+        if (c.total + w.weight > 0x7FFF'FFFF) {
+            fail_place(w.place, "too-many-tokens", "more than 2147483647 tokens",
+                       "bound the place");
+            return;
+        }
+        if (tables_->place_kind[w.place] == PlaceKind::kCount) {
+            const Counts was = c;
+            c.ready += w.weight;
+            c.total += w.weight;
+            ready_changed(w.place, was.ready, was.ready + w.weight);
+        } else {
+            give_timed(w.place, w.weight);
+        }
+    }
+}
+
+void Engine::give_timed(std::uint32_t p, std::uint32_t weight) {
+    const std::uint32_t number = tables_->place_duration[p];
+    const bool constant =
+        number == kNoIndex || tables_->durations[number].kind == DurationKind::kConstant;
+    for (std::uint32_t k = 0; k < weight; ++k) {
+        std::int64_t ticks = 0;
+        std::uint32_t fifo = kNoIndex;
+        if (constant) {
+            if (number != kNoIndex) {
+                ticks = tables_->durations[number].ticks;
+                fifo = tables_->durations[number].fifo;
+            }
+        } else if (!draw_place(p, ticks)) {
+            return;
+        }
+        add_timed(p, ticks, fifo);
+    }
+}
+
+void Engine::add_timed(std::uint32_t p, std::int64_t ticks, std::uint32_t fifo) {
+    Counts& c = state_.counts[p];
+    const Counts was = c;
+    ++c.total;
+    total_changed(p, was.total, was.total + 1);
+    if (ticks == 0) {
+        ++c.ready;
+        ready_changed(p, was.ready, was.ready + 1);
+        return;
+    }
+    Pending pending;
+    pending.what = Pending::kPlain | p;
+    if (__builtin_add_overflow(state_.now, ticks, &pending.at)) {
+        fail_place(p, "time-overflow", "a token would be ready after the end of time",
+                   "shorten its duration");
+        return;
+    }
+    if (fifo != kNoIndex) {
+        state_.rings[fifo].push(pending);
+    } else {
+        state_.heap.push(pending);
+    }
+}
+
+void Engine::fire(std::uint32_t t) {
+    constexpr std::uint64_t kA = 0x9E3779B185EBCA87u, kB = 0xC2B2AE3D27D4EB4Fu;
+    ++state_.firings;
+    state_.last = t;
+    std::uint64_t h = state_.log_hash ^ (static_cast<std::uint64_t>(state_.now) * kB);
+    h = std::rotl(h * kA, 29) ^ tables_->path_hash[t];
+    state_.log_hash = h * kB;
+    if (++state_.instant_firings + 1024 > options_.firings_per_instant) {
+        watch_instant(t);
+    }
+    if (options_.listener != nullptr) {
+        options_.listener->fired({state_.now}, {t});
+    }
+    if ((tables_->flags[t] & kFiresSpecially) != 0) {
+        fire_special(t);
+        return;
+    }
+    take_plain(t);
+    if (!touch_list_.empty()) {
+        look_again(true);
+    }
+    give_plain(t);
+    finish_firing(t);
+}
+
+void Engine::finish_firing(std::uint32_t t) {
+    if ((tables_->flags[t] & kGated) != 0) {
+        touch(t);
+    } else if (hot_[t].unsatisfied == 0 && (hot_[t].candidate & kStatus) == 0) {
+        enter(t);
+    }
+    if (!resampled_.empty()) {
+        resample();
+    }
+    if (!touch_list_.empty()) {
+        look_again(false);
+    }
+}
+
+// -- time
+// ------------------------------------------------------------------------------------------------------------
+
+bool Engine::stale(const Pending& p) const {
+    const std::uint32_t index = p.what & Pending::kIndexMask;
+    switch (p.what & ~Pending::kIndexMask) {
+        case Pending::kToken: {
+            const Token& token = state_.rich[index].pool[p.slot];
+            return !token.alive || token.ready || token.ready_at != p.at;
+        }
+        case Pending::kDelay:
+            return std::none_of(
+                state_.clocks[index].begin(), state_.clocks[index].end(),
+                [&](const Clock& c) { return c.phase == Clock::kRunning && c.at == p.at; });
+        default:
+            return false;
+    }
+}
+
+// When the next token, delay or holding is ready; never if none.
+std::int64_t Engine::next_pending() {
+    std::int64_t next = SimTime::never().ticks;
+    for (PendingRing& ring : state_.rings) {
+        while (ring.size != 0 && stale(ring.front())) {
+            ring.pop();
+        }
+        if (ring.size != 0 && ring.front().at < next) {
+            next = ring.front().at;
+        }
+    }
+    while (!state_.heap.items.empty() && stale(state_.heap.items.front())) {
+        state_.heap.pop();
+    }
+    if (!state_.heap.items.empty() && state_.heap.items.front().at < next) {
+        next = state_.heap.items.front().at;
+    }
+    return next;
+}
+
+void Engine::ripen(const Pending& p) {
+    const std::uint32_t index = p.what & Pending::kIndexMask;
+    if ((p.what & ~Pending::kIndexMask) == Pending::kPlain) {
+        const std::uint32_t was = state_.counts[index].ready++;
+        ready_changed(index, was, was + 1);
+        return;
+    }
+    if (stale(p)) {
+        return;
+    }
+    if ((p.what & ~Pending::kIndexMask) == Pending::kToken) {
+        ready_token(index, p.slot);
+        return;
+    }
+    for (Clock& c : state_.clocks[index]) {
+        if (c.phase == Clock::kRunning && c.at == p.at) {
+            c.phase = Clock::kDue;
+            break;
+        }
+    }
+    touch(tables_->delays[index].transition);
+}
+
+void Engine::advance_to(std::int64_t at) {
+    state_.now = at;
+    state_.instant_firings = 0;
+    instant_log_.clear();
+    for (PendingRing& ring : state_.rings) {
+        while (ring.size != 0 && ring.front().at <= at) {
+            const Pending p = ring.front();
+            ring.pop();
+            ripen(p);
+        }
+    }
+    while (!state_.heap.items.empty() && state_.heap.items.front().at <= at) {
+        const Pending p = state_.heap.items.front();
+        state_.heap.pop();
+        ripen(p);
+    }
+    if (!touch_list_.empty()) {
+        look_again(false);
+    }
+}
+
+bool Engine::somebody_can_fire() const {
+    for (const Level& l : levels_) {
+        if (l.live_fresh + l.live_raced != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::int64_t Engine::next_time() {
+    if (faulted_) {
+        return SimTime::never().ticks;
+    }
+    if (somebody_can_fire()) {
+        return tables_->paced ? std::max(state_.now, state_.next_beat) : state_.now;
+    }
+    if (state_.offered != kNoIndex) {
+        return state_.now;
+    }
+    std::int64_t next = next_pending();
+    if (!state_.occurrences.empty()) {
+        next = std::min(next, std::max(state_.now, state_.occurrences.front().at));
+    }
+    return next;
+}
+
+bool Engine::settled() {
+    return !somebody_can_fire() && state_.offered == kNoIndex && !occurrence_pending_now();
+}
+
+Engine::Outcome Engine::step(std::int64_t until) { return run(until, state_.firings + 1); }
+
+Engine::Outcome Engine::run(std::int64_t until, std::uint64_t firings) {
+    for (;;) {
+        if (faulted_) {
+            return Outcome::kFault;
+        }
+        if (state_.firings >= firings) {
+            return Outcome::kFired;
+        }
+        if (tables_->paced && state_.now < state_.next_beat && somebody_can_fire()) {
+            if (state_.next_beat > until) {
+                state_.now = std::max(state_.now, until);
+                return Outcome::kSettled;
+            }
+            advance_to(state_.next_beat);
+        }
+        const std::uint32_t t = select();
+        if (t != kNoIndex) {
+            if (tables_->paced) {
+                state_.next_beat = state_.now + options_.beat;
+            }
+            fire(t);
+            continue;
+        }
+        if (state_.offered != kNoIndex) {
+            end_offer();
+            continue;
+        }
+        std::int64_t next = next_pending();
+        if (!state_.occurrences.empty()) {
+            if (state_.occurrences.front().at <= state_.now) {
+                offer_first();
+                continue;
+            }
+            next = std::min(next, state_.occurrences.front().at);
+        }
+        if (next == SimTime::never().ticks) {
+            return Outcome::kDead;
+        }
+        if (next > until) {
+            state_.now = std::max(state_.now, until);
+            return Outcome::kSettled;
+        }
+        advance_to(next);
+    }
+}
+
+}  // namespace puppetri::net
