@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// The reference nets whose logs were worked out by hand.
+#include <doctest/doctest.h>
+
+#include <map>
+
+#include "maker.h"
+
+namespace puppetri::net {
+namespace {
+
+constexpr double kFrame = 1.0 / 24;
+
+Net walk(int steps) {
+    Maker m;
+    const double n = 20 * kFrame;
+    m.place("P1", 1);
+    m.place("P2", 0, lasts(n / 2));
+    m.place("P4", 0, lasts(n));
+    m.place("P6", 0, lasts(n));
+    m.place("P7", 0, lasts(n / 2));
+    m.place("P8", 0, lasts(n / 2));
+    m.t("t1", {"P1"}, {"P2", "P3"});
+    m.t("t2", {"P2", "unless P5"}, {"P4", "P3"}).priority = 2;
+    m.t("t3", {"P4", "unless P5"}, {"P6", "P3"}).priority = 2;
+    m.t("t4", {"P6", "unless P5"}, {"P4", "P3"}).priority = 2;
+    m.t("t5", {std::to_string(steps) + "*P3"}, {"P5"});
+    m.t("t6", {"P4"}, {"P7"});
+    m.t("t7", {"P2"}, {"P8"});
+    m.t("t8", {"P6"}, {"P8"});
+    m.t("t9", {"P7"}, {"P9"});
+    m.t("t10", {"P8"}, {"P9"});
+    FinalMarkingDraft end;
+    end.condition = Formula::marked(m.p("P9"));
+    m.draft.finals.push_back(end);
+    return m.net();
+}
+
+TEST_CASE("the walk of three steps fires at frames 0, 10, 30, 50, 60 [oracle]") {
+    Run run(walk(3));
+    CHECK(run.until(100) == Engine::Outcome::kDead);
+    CHECK(run.engine.in_final_marking());
+    CHECK(run.log.text == "0:t1 0.416667:t2 1.25:t3 1.25:t5 2.083333:t8 2.5:t10");
+    CHECK(run.tokens("P5") == 1);
+    CHECK(run.tokens("P9") == 1);
+}
+
+TEST_CASE("k steps last exactly 20 k frames and end with P8 for odd k, P7 for even [law]") {
+    for (int k = 1; k <= 6; ++k) {
+        Run run(walk(k));
+        run.until(100);
+        CHECK(run.engine.state().now == seconds(20 * kFrame * k).ticks);
+        const std::string last = k % 2 == 1 ? "t10" : "t9";
+        CHECK(run.net.transition({run.engine.state().last}).path == last);
+    }
+}
+
+Net ball_game() {
+    Maker m;
+    const auto timed = [&](const char* name, double s) { m.place(name, 0, lasts(s)); };
+    m.place("P1", 1, lasts(1.5));
+    m.place("P13", 1, lasts(1));
+    for (const char* name : {"P2", "P4", "P6", "P8", "P14", "P16", "P18", "P20"}) {
+        timed(name, 0.5);
+    }
+    for (const char* name : {"P3", "P7", "P15", "P19"}) {
+        timed(name, 0.25);
+    }
+    timed("P5", 1);
+    timed("P17", 1.5);
+    timed("P10", 0.5);
+    timed("P12", 0.5);
+    DurationDraft as = of_kind(DurationKind::kAs);
+    as.sibling = m.p("P14");
+    m.place("P9", 0, as);
+    as.sibling = m.p("P6");
+    m.place("P11", 0, as);
+    m.t("t1", {"P1"}, {"P2"});
+    m.t("t2", {"P2", "P9"}, {"P3"});
+    m.t("t3", {"P3"}, {"P4", "P10"});
+    m.t("t4", {"P4"}, {"P5"});
+    m.t("t5", {"P5"}, {"P6", "P11"});
+    m.t("t6", {"P6", "P12"}, {"P7"});
+    m.t("t7", {"P7"}, {"P8"});
+    m.t("t8", {"P8"}, {"P1"});
+    m.t("t9", {"P13"}, {"P14", "P9"});
+    m.t("t10", {"P14", "P10"}, {"P15"});
+    m.t("t11", {"P15"}, {"P16"});
+    m.t("t12", {"P16"}, {"P17"});
+    m.t("t13", {"P17"}, {"P18"});
+    m.t("t14", {"P18", "P11"}, {"P19"});
+    m.t("t15", {"P19"}, {"P20", "P12"});
+    m.t("t16", {"P20"}, {"P13"});
+    return m.net();
+}
+
+TEST_CASE("the ball game keeps its five invariants after every firing [law]") {
+    Run run(ball_game());
+    const auto sum = [&](std::initializer_list<const char*> places) {
+        std::uint32_t total = 0;
+        for (const char* p : places) {
+            total += run.tokens(p);
+        }
+        return total;
+    };
+    for (int i = 0; i < 2000; ++i) {
+        REQUIRE(run.engine.step() == Engine::Outcome::kFired);
+        REQUIRE(sum({"P1", "P2", "P3", "P7", "P8", "P10", "P12", "P15", "P16", "P17", "P18",
+                     "P19"}) == 1);
+        REQUIRE(sum({"P1", "P2", "P3", "P4", "P5", "P6", "P7", "P8"}) == 1);
+        REQUIRE(sum({"P13", "P14", "P15", "P16", "P17", "P18", "P19", "P20"}) == 1);
+        REQUIRE(sum({"P9", "P3", "P10"}) == run.tokens("P14"));
+        REQUIRE(sum({"P11", "P19", "P12"}) == run.tokens("P6"));
+    }
+}
+
+TEST_CASE("of the three arcs only t2 is enabled [unit]") {
+    Maker m;
+    m.place("P1", 1);
+    m.place("P2", 1);
+    m.place("P3", 1);
+    m.t("t1", {"2*P1"}, {"P4"});
+    m.t("t2", {"P2", "P3"}, {"P4"});
+    Run run(m.net());
+    CHECK_FALSE(run.engine.fireable(run.net.find_transition("t1")));
+    CHECK(run.engine.fireable(run.net.find_transition("t2")));
+    CHECK(run.until(100) == Engine::Outcome::kDead);
+    CHECK(run.log.text == "0:t2");
+}
+
+}  // namespace
+}  // namespace puppetri::net
