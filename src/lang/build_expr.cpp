@@ -116,7 +116,7 @@ std::string Builder::quoted(const Token& token) {
     inside.remove_suffix(1);
     std::string out;
     for (std::size_t i = 0; i < inside.size(); ++i) {
-        if (inside[i] != '\\' || token.kind == Kind::kQuotedName) {
+        if (inside[i] != '\\' || token.kind == Kind::kQuotedName || i + 1 == inside.size()) {
             out += inside[i];
             continue;
         }
