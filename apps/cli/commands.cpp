@@ -11,6 +11,7 @@ std::vector<Command> all_commands() {
         fmt_command(),
         run_command(),
         draw_command(),
+        export_command(),
     };
 }
 

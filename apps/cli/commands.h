@@ -12,6 +12,7 @@ Command check_command();
 Command fmt_command();
 Command run_command();
 Command draw_command();
+Command export_command();
 
 // In the order of the help.
 std::vector<Command> all_commands();

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "commands.h"
-#include "horizon.h"
 #include "interrupt.h"
 #include "live_input.h"
 #include "logs.h"
+#include "performing.h"
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/scene/events.h"
@@ -21,46 +21,6 @@ namespace {
 bool go_on(void* progress, double share_done) {
     static_cast<Progress*>(progress)->show(share_done);
     return !interrupted();
-}
-
-// Everything that the command line says about a run, checked.
-Result<scene::PerformOptions, int> options_of(const Arguments& arguments, const scene::Scene& scene) {
-    scene::PerformOptions options;
-    if (arguments.given("--seed")) {
-        const std::int64_t seed = arguments.integer("--seed");
-        if (seed < 0) {
-            say_error("a seed is 0 or more");
-            return Unexpected<int>(kBadInput);
-        }
-        options.seed = static_cast<std::uint64_t>(seed);
-    }
-    if (arguments.given("--for")) {
-        const auto horizon = parse_horizon(arguments.text("--for"), scene.frame_rate);
-        if (!horizon) {
-            say_error("--for: " + horizon.error());
-            return Unexpected<int>(kBadInput);
-        }
-        options.horizon = *horizon;
-    }
-    const std::string events = arguments.text("--events");
-    if (!events.empty() && events != "-") {
-        const auto text = io::DiskFiles().read(events);
-        if (!text) {
-            say_error(events + ": " + text.error().message);
-            return Unexpected<int>(kBadInput);
-        }
-        scene::EventList list = scene::parse_event_list(*text, events, scene::event_names(scene.net));
-        say_diagnostics(list.diagnostics);
-        if (has_errors(list.diagnostics)) {
-            return Unexpected<int>(kBadInput);
-        }
-        options.events = std::move(list.events);
-        if (list.seed && !options.seed) {
-            options.seed = list.seed;
-        }
-    }
-    options.record = arguments.given("--record");
-    return options;
 }
 
 bool write_or_say(const std::string& path, const std::string& text) {
@@ -83,10 +43,11 @@ int run(const Arguments& arguments) {
         return kBadInput;
     }
     say_diagnostics(scene->notes);
-    auto options = options_of(arguments, *scene);
+    auto options = perform_options(arguments, *scene);
     if (!options) {
         return options.error();
     }
+    options->record = arguments.given("--record");
     std::optional<CsvLog> log;
     if (arguments.given("--log")) {
         const std::string path = arguments.text("--log");
