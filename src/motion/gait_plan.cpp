@@ -14,7 +14,8 @@ namespace {
 // The shape of a walk. Angles after the averages of slow adult gait in Winter (2009, chapter 3) and
 // Perry (1992), except that the heel rises less before the foot leaves the floor, so that a
 // standing knee stays below 25 degrees.
-constexpr double kStrikePitch = radians(22), kLiftPitch = radians(-33), kSwingPitch = radians(-46);
+constexpr double kSwingPitch = radians(-46), kFlatSwingPitch = radians(-26);
+constexpr double kSwingKnee = radians(60);
 constexpr double kFlatAfterStrike = 0.17,
                  kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
 constexpr double kYaw = radians(7), kList = radians(2.5);
@@ -23,8 +24,9 @@ constexpr double kBoundaryLead = 0.05;  // of the stroke
 constexpr double kClearance_m = 0.022;
 constexpr double kBrake = 6.5;      // at touch down, in units of way / time^2
 constexpr double kSetDown_m = 1.6;  // the same upward, in m
-constexpr double kLongest = 0.9974, kLanding = 0.9922,
-                 kShortest = 0.9775;  // reach of a standing leg: knee 9.2 and 23.8 degrees
+// Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
+// off (20), and the shortest of a leg that stands (24.4).
+constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9775;
 
 class Planner {
  public:
@@ -53,8 +55,16 @@ class Planner {
         plan_travel_of_pelvis();
         plan_turns();
         plan_support_foot();
-        plan_swing_foot();
-        plan_height_of_pelvis();
+        swing_pitch_ = rolls() || half_ < 0 ? kSwingPitch : kFlatSwingPitch;
+        for (int round = 0; round < 4; ++round) {
+            plan_swing_foot();
+            plan_height_of_pelvis();
+            const double missing = kSwingKnee - swing_knee();
+            if (std::fabs(missing) < radians(4)) {
+                break;
+            }
+            swing_pitch_ = clamp(swing_pitch_ - 0.8 * missing, radians(-75), radians(-10));
+        }
         return std::move(plan_);
     }
 
@@ -104,7 +114,8 @@ class Planner {
         if (first_) {
             to = {ahead_of_ankles() + x_ / 2 - 0.015 * x_, 1.62 * speed, 0};
         } else if (whole_) {
-            to = {ahead_of_ankles() + x_ / 2 + kBoundaryLead * x_, 1.28 * speed, 0};
+            to = {ahead_of_ankles() + x_ / 2 + kBoundaryLead * x_ * clamp(half_ / (0.1 * n_), 0, 1),
+                  1.28 * speed, 0};
         }
         plan_.pelvis_path.z = plan_travel({now.position.z, now.velocity.z, 0}, to, T);
         // Over the support foot in the middle, back over the midline at the border, on the way to
@@ -137,17 +148,48 @@ class Planner {
     }
 
     bool rolls() const { return half_ > 0.02 * n_; }
-    double lift_pitch() const {
-        return rolls() || half_ < 0 ? kLiftPitch * std::fmin(1, std::fabs(half_) / (0.08 * n_)) : 0;
-    }
-    double strike_pitch() const {
-        return rolls() ? kStrikePitch * std::fmin(1, half_ / (0.08 * n_)) : 0;
+    // Heel off to toe off; the state at the border is where the next step takes it up.
+    static Quintic heel_rise(double lift_pitch, double length_s) {
+        return Quintic::between({}, {lift_pitch, 1.9 * lift_pitch / length_s, 0}, length_s);
     }
 
-    // Heel off to toe off of the foot that supports in this step, ending at `lift`; its state at
-    // the border is where the next step takes it up.
-    Quintic heel_rise(double length_s) const {
-        return Quintic::between({}, {lift_pitch(), 1.9 * lift_pitch() / length_s, 0}, length_s);
+    // How high the hips are over an ankle when the leg has the given reach.
+    double hips_height(Side side, Vec3 ankle_path, Vec3 pelvis_path, Quat turn,
+                       double reach) const {
+        const Vec3 hip = rotate(turn, f_.legs[index_of(side)].hip_pelvis);
+        const double dx = pelvis_path.x + hip.x - ankle_path.x,
+                     dz = pelvis_path.z + hip.z - ankle_path.z;
+        const double r = reach * f_.leg_m;
+        return ankle_path.y - hip.y + std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01));
+    }
+    Quat turn_at(double t) const {
+        return about_y(plan_.pelvis_yaw.at(t).position) * about_z(plan_.pelvis_list.at(t).position);
+    }
+
+    // The pitch in [from, to] at which the leg on this print, with this reach, carries the hips at
+    // `height`; a larger pitch either way raises the ankle. The nearer end where there is none.
+    double pitch_for(Side side, const Footprint& print, Vec3 pelvis_path, Quat turn, double reach,
+                     double height, double from, double to) const {
+        for (int i = 0; i < 16; ++i) {
+            const double middle = (from + to) / 2;
+            const Vec3 ankle =
+                path_from_world_ * ankle_on_print(f_, side, print, {middle, 0, 0}).position;
+            (hips_height(side, ankle, pelvis_path, turn, reach) < height ? from : to) = middle;
+        }
+        return to;
+    }
+
+    // How far the heel of the hind foot must have risen when it leaves the floor: so that its leg
+    // is as long as the height wants that the front leg, bent by some 20 degrees, has.
+    double lift_pitch(Side hind, const Footprint& hind_print, Vec3 front_ankle_path,
+                      Vec3 pelvis_path, Quat turn) const {
+        if (std::fabs(half_) < 0.02 * n_) {
+            return 0;
+        }
+        const double height =
+            hips_height(other(hind), front_ankle_path, pelvis_path, turn, kPushing);
+        return pitch_for(hind, hind_print, pelvis_path, turn, kPushing, height, radians(-8),
+                         radians(-58));
     }
 
     void plan_support_foot() {
@@ -163,11 +205,16 @@ class Planner {
                 land(foot, support_side_, support_, support_print_, plan_.support_strike_s, keys);
         }
         if (!last_) {
-            const double begin =
-                std::fmax(plan_.duration_s - (first_ ? 0.6 : 1) * kHeelRise * n_, flat_s + 0.02);
+            const double T = plan_.duration_s;
+            const double begin = std::fmax(T - (first_ ? 0.6 : 1) * kHeelRise * n_, flat_s + 0.02);
             const double length_s = plan_.support_lift_s - begin;
             if (length_s > 0.03) {
-                const Quintic rise = heel_rise(length_s);
+                const Vec3 front{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m, x_};
+                const Motion3 end = plan_.pelvis_path.at(T);
+                const Quintic rise = heel_rise(
+                    lift_pitch(support_side_, support_print_, front,
+                               end.position + end.velocity * std::fmax(half_, 0), turn_at(T)),
+                    length_s);
                 keys.push_back({begin, {}});
                 keys.push_back({plan_.support_lift_s, rise.at(length_s)});
             }
@@ -216,6 +263,7 @@ class Planner {
     void plan_swing_foot() {
         const Side side = spec_.transfer;
         FootPath& foot = plan_.feet[index_of(side)];
+        foot = FootPath();
         foot.set_body(f_, side);
         const Vec3 landing_path{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m,
                                 last_ ? 0 : x_};
@@ -227,22 +275,40 @@ class Planner {
         const double d = strike - lift;
         // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
         // that all is smooth.
-        const double lift_to = first_  ? 0.12 * lift_pitch()
-                               : last_ ? 0.78 * lift_pitch()
-                                       : lift_pitch();
-        const double strike_to = (last_ ? 0.25 : first_ ? 1.3 : 1) * strike_pitch();
-        const double flat = last_ ? plan_.duration_s : strike + kFlatAfterStrike * n_;
+        const Footprint print = footprint_of(f_, side, swing_);
+        double lift_to = radians(-4);
+        if (!first_ && planted) {
+            const Vec3 front =
+                path_from_world_ * plan_.feet[index_of(support_side_)].at(lift).ankle_world;
+            lift_to =
+                lift_pitch(side, print, front, plan_.pelvis_path.at(lift).position, turn_at(lift));
+        }
+        double strike_to = 0;
+        if (rolls()) {
+            const Vec3 pelvis = plan_.pelvis_path.at(strike).position;
+            const Vec3 back =
+                path_from_world_ * plan_.feet[index_of(support_side_)].at(strike).ankle_world;
+            const double lowest =
+                hips_height(support_side_, back, pelvis, turn_at(strike), kShortest) + 0.004;
+            strike_to = last_ ? radians(5)
+                              : pitch_for(side, landing, pelvis, turn_at(strike), kLanding, lowest,
+                                          radians(18), radians(36));
+        }
+        const double flat = last_ ? plan_.duration_s
+                                  : strike + kFlatAfterStrike * n_ *
+                                                 std::sqrt(std::fmax(strike_to, 0) / radians(22));
         Motion1 start = swing_.pitch;
         if (planted && !first_ && rolls()) {
             const double length_s = kHeelRise * n_ + half_;
-            start.acceleration = heel_rise(length_s).at(length_s - half_).acceleration;
+            start.acceleration = heel_rise(lift_to, length_s).at(length_s - half_).acceleration;
         }
         std::vector<Waypoint1> way;
         if (lift > 0.01) {
             way.push_back({lift, lift_to});
         }
-        const double peak = rolls() || half_ < 0 ? kSwingPitch : radians(-24);
-        way.push_back({lift + (first_ ? 0.36 : 0.24) * d, first_ ? 0.72 * peak : peak});
+        const double peak =
+            first_ ? 0.72 * swing_pitch_ : std::fmin(swing_pitch_, lift_to - radians(6));
+        way.push_back({lift + (first_ ? 0.36 : 0.24) * d, peak});
         way.push_back({lift + 0.62 * d, 0.2 * peak});
         way.push_back({lift + 0.86 * d, 1.05 * strike_to});
         Key1 end{strike, {}};
@@ -256,7 +322,6 @@ class Planner {
         Motion3 from = to_path(swing_.ankle);
         Motion1 bend = swing_.toe_bend;
         if (planted) {
-            const Footprint print = footprint_of(f_, side, swing_);
             foot.stand(0, print);
             const Motion1 at_lift = pitch.at(lift);
             from = to_path(ankle_on_print(f_, side, print, at_lift));
@@ -304,14 +369,9 @@ class Planner {
                                     : t >= plan_.support_strike_s && t <= plan_.support_lift_s;
             const LegControl leg = plan_.feet[index_of(side)].at(t);
             const Vec3 ankle = path_from_world_ * leg.ankle_world;
-            const Quat turn = about_y(plan_.pelvis_yaw.at(t).position) *
-                              about_z(plan_.pelvis_list.at(t).position);
-            const Vec3 hip = rotate(turn, f_.legs[index_of(side)].hip_pelvis);
-            const double dx = plan_.pelvis_path.x.at(t).position + hip.x - ankle.x;
-            const double dz = plan_.pelvis_path.z.at(t).position + hip.z - ankle.z;
             auto height = [&](double reach) {
-                const double r = reach * f_.leg_m;
-                return ankle.y - hip.y + std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01));
+                return hips_height(side, ankle, plan_.pelvis_path.at(t).position, turn_at(t),
+                                   reach);
             };
             const bool lands =
                 transfers && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
@@ -321,6 +381,25 @@ class Planner {
             }
         }
         return b;
+    }
+
+    double swing_knee() const {
+        const Side side = spec_.transfer;
+        double shortest = 1e9;
+        for (int i = 1; i < 12; ++i) {
+            const double t = std::fmin(lerp(std::fmax(plan_.lift_s, 0), plan_.strike_s, i / 12.0),
+                                       plan_.duration_s);
+            const Vec3 hip = plan_.pelvis_path.at(t).position +
+                             rotate(turn_at(t), f_.legs[index_of(side)].hip_pelvis);
+            shortest = std::fmin(
+                shortest,
+                length(hip - path_from_world_ * plan_.feet[index_of(side)].at(t).ankle_world));
+        }
+        const figure::Leg& leg = f_.legs[index_of(side)];
+        const double c =
+            (leg.thigh_m * leg.thigh_m + leg.shank_m * leg.shank_m - shortest * shortest) /
+            (2 * leg.thigh_m * leg.shank_m);
+        return kPi - puppetri::acos(clamp(c, -1, 1));
     }
 
     void plan_height_of_pelvis() {
@@ -353,7 +432,7 @@ class Planner {
     Side support_side_;
     FootState swing_, support_;
     bool whole_ = false, first_ = false, last_ = false;
-    double n_ = 0, x_ = 0, half_ = 0, side_ = 1, floor_y_ = 0;
+    double n_ = 0, x_ = 0, half_ = 0, side_ = 1, floor_y_ = 0, swing_pitch_ = 0;
     Footprint support_print_;
     Transform path_from_world_;
     StepPlan plan_;

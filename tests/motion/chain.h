@@ -38,6 +38,7 @@ class Chain {
         }
         now_s_ += duration_s;
     }
+    double steady_begin_s = 0, steady_end_s = -1;
     double now_s() const { return now_s_; }
     const std::vector<double>& joins() const { return joins_; }
 
@@ -92,7 +93,9 @@ class Chain {
                         .end_s = now_s_,
                         .rate_hz = rate_hz,
                         .planted = planted(),
-                        .joins_s = joins_});
+                        .joins_s = joins_,
+                        .steady_begin_s = steady_begin_s,
+                        .steady_end_s = steady_end_s});
     }
     std::vector<Transform> world(double t) const {
         figure::Pose pose;

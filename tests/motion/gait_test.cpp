@@ -31,6 +31,9 @@ Chain walked(const figure::Figure& f, const Walk& w) {
     for (int k = 1; k < w.steps; ++k) {
         step(side = other(side), StepKind::kWhole);
     }
+    // Steady: all but the half steps and the first whole one.
+    chain.steady_begin_s = 1.5 * w.n_s;
+    chain.steady_end_s = (w.steps - 0.5) * w.n_s;
     step(other(side), StepKind::kLastHalf);
     return chain;
 }
@@ -51,7 +54,7 @@ void draw(const figure::Figure& f, const Chain& chain, const char* name, double 
 
 }  // namespace
 
-TEST_CASE("explore [skip]" * doctest::skip()) {
+TEST_CASE("explore walk [skip]" * doctest::skip()) {
     Walk w;
     if (const char* s = std::getenv("H"))
         w.height_m = std::atof(s);

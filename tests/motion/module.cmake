@@ -1,2 +1,2 @@
-# The measuring instrument, shared with other modules' tests.
+#The measuring instrument, shared with other modules' tests.
 target_sources(test_motion PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp")

@@ -211,6 +211,9 @@ class Instrument {
                                 at(i - 1, f_.hips).translation) *
                                (1 / (dt_ * dt_));
                 take(m_.pelvis_acceleration, length(a), time(i), "hips");
+                if (time(i) >= in_.steady_begin_s && time(i) <= in_.steady_end_s) {
+                    take(m_.pelvis_steady, length(a), time(i), "hips");
+                }
             }
         }
         m_.sway_mm = 1000 * (hi - lo);
@@ -379,6 +382,7 @@ std::string report(const Measures& m) {
     std::snprintf(line, sizeof line, "rise %.1f mm, sway %.1f mm\n", m.rise_mm, m.sway_mm);
     text += line;
     add("pelvis acceleration", m.pelvis_acceleration, "m/s2");
+    add("pelvis steady", m.pelvis_steady, "m/s2");
     pair("knee", m.knee);
     pair("hip", m.hip);
     pair("ankle", m.ankle);

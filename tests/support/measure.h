@@ -26,6 +26,7 @@ struct MeasureInput {
     std::vector<Planted> planted;  // in any order; measured in the parts inside [begin, end]
     std::vector<double> joins_s;   // instants at which one movement follows another
     double floor_y = 0;
+    double steady_begin_s = 0, steady_end_s = -1;  // where the gait is steady; empty: nowhere
 };
 
 // The worst value of one quantity, and where and when it happened.
@@ -62,6 +63,7 @@ struct Measures {
     double rise_mm = 0;       // largest pelvis_rise_mm
     double sway_mm = 0;       // width of the pelvis's path across its mean direction
     Worst pelvis_acceleration;  // m/s^2
+    Worst pelvis_steady;        // m/s^2, within the steady interval
     JointMeasures knee, hip, ankle, toes, spine, neck, arm, fingers;
     Worst limit_excess_deg;
     Worst join_position_m;  // jump of any joint from one side of a join to the other, motion taken
