@@ -158,9 +158,9 @@ Curve1 plan_height(const HeightPlan& plan) {
             // The middle of the band pulls a little everywhere, so that the curve is determined.
             add(value[s], (lo + hi) / 2 - value0[s], 0.2);
             if (round > 0 && (now > hi || now < lo)) {
-                add(value[s], (now > hi ? hi : lo) - value0[s], now > hi ? 40 : 10);
+                add(value[s], (now > hi ? hi : lo) - value0[s], 40);
             }
-            add(bend[s], -bend0[s], 4e-5);
+            add(bend[s], -bend0[s], 5e-5 * T * T);
         }
         add({0, 0, 0, 1, 0}, plan.to.position - base, pinned);
         add({0, 0, 0, 0, 1}, 0, plan.end_is_free ? 1e-2 : 1e6);
