@@ -18,9 +18,10 @@ constexpr double kSwingPitch = radians(-46), kFlatSwingPitch = radians(-26);
 constexpr double kSwingKnee = radians(60);
 constexpr double kFlatAfterStrike = 0.17,
                  kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
-constexpr double kYaw = radians(7), kList = radians(2.5);
+constexpr double kList = radians(2.5);
 constexpr double kSway = 0.0125;        // of the height, to either side
-constexpr double kBoundaryLead = 0.05;  // of the stroke
+constexpr double kBoundaryLead = 0.065;  // of the stroke
+constexpr double kRestLag = 0.01;       // of the stroke: what the living rest after the last step makes good
 constexpr double kClearance_m = 0.022;
 constexpr double kBrake = 6.5;      // at touch down, in units of way / time^2
 constexpr double kSetDown_m = 1.6;  // the same upward, in m
@@ -46,6 +47,8 @@ class Planner {
         last_ = spec.kind == StepKind::kLastHalf;
         n_ = whole_ ? plan_.duration_s : 2 * plan_.duration_s;
         x_ = spec.stroke_m;
+        // Long steps for the legs turn the pelvis more.
+        yaw_ = clamp(radians(10) * x_ / f_.leg_m, radians(3), radians(10));
         side_ = support_side_ == Side::kLeft ? 1 : -1;
     }
 
@@ -110,9 +113,9 @@ class Planner {
         const Motion3 now =
             to_path({context_.now.pelvis.position_world, context_.rate.pelvis_velocity_world, {}});
         const double midline = -side_ * f_.stance_half_width_m;
-        Motion1 to{ahead_of_ankles(), 0, 0};
+        Motion1 to{ahead_of_ankles() - kRestLag * x_, 0, 0};
         if (first_) {
-            to = {ahead_of_ankles() + x_ / 2 - 0.015 * x_, 1.62 * speed, 0};
+            to = {ahead_of_ankles() + x_ / 2 - 0.004 * x_, 1.7 * speed, 0};
         } else if (whole_) {
             to = {ahead_of_ankles() + x_ / 2 + kBoundaryLead * x_ * clamp(half_ / (0.1 * n_), 0, 1),
                   1.28 * speed, 0};
@@ -132,8 +135,8 @@ class Planner {
         // The hip of the foot that goes ahead goes ahead; that of the free leg drops. Right
         // transfer (side_ = 1): yaw from negative to positive.
         const double T = plan_.duration_s, bend = (kPi / n_) * (kPi / n_);
-        const Motion1 before{first_ ? 0 : -side_ * kYaw, 0, first_ ? 0 : side_ * kYaw * bend};
-        const Motion1 after{last_ ? 0 : side_ * kYaw, 0, last_ ? 0 : -side_ * kYaw * bend};
+        const Motion1 before{first_ ? 0 : -side_ * yaw_, 0, first_ ? 0 : side_ * yaw_ * bend};
+        const Motion1 after{last_ ? 0 : side_ * yaw_, 0, last_ ? 0 : -side_ * yaw_ * bend};
         plan_.pelvis_yaw = minimum_jerk({0, before}, {}, {T, after});
         const double rate = side_ * kList * kPi / n_;
         plan_.pelvis_list = minimum_jerk({0, {0, first_ ? 0 : rate, 0}},
@@ -292,7 +295,7 @@ class Planner {
                 hips_height(support_side_, back, pelvis, turn_at(strike), kShortest) + 0.004;
             strike_to = last_ ? radians(5)
                               : pitch_for(side, landing, pelvis, turn_at(strike), kLanding, lowest,
-                                          radians(18), radians(36));
+                                          radians(18), radians(38));
         }
         const double flat = last_ ? plan_.duration_s
                                   : strike + kFlatAfterStrike * n_ *
@@ -361,7 +364,8 @@ class Planner {
     // The band at t: standing legs between their shortest and longest reach, whatever the height of
     // the pelvis.
     HeightBand band(double t) const {
-        HeightBand b{t, -1e9, 1e9};
+        const double middle = puppetri::sin(kPi * t / plan_.duration_s);
+        HeightBand b{t, -1e9, 1e9, whole_ ? 0.2 + 0.75 * middle * middle : 0.45};
         for (const Side side : {Side::kLeft, Side::kRight}) {
             const bool transfers = side == spec_.transfer;
             const bool stands = transfers
@@ -417,7 +421,8 @@ class Planner {
             for (const Side side : {Side::kLeft, Side::kRight}) {
                 feet.legs[index_of(side)] = plan_.feet[index_of(side)].at(T);
             }
-            height.to.position = (path_from_world_ * pelvis_over_feet(f_, feet).position_world).y;
+            plan_.rest_path = path_from_world_ * pelvis_over_feet(f_, feet).position_world;
+            height.to.position = plan_.rest_path.y;
         }
         constexpr int kBands = 20;
         for (int i = 1; i <= kBands; ++i) {
@@ -432,7 +437,7 @@ class Planner {
     Side support_side_;
     FootState swing_, support_;
     bool whole_ = false, first_ = false, last_ = false;
-    double n_ = 0, x_ = 0, half_ = 0, side_ = 1, floor_y_ = 0, swing_pitch_ = 0;
+    double n_ = 0, x_ = 0, half_ = 0, side_ = 1, floor_y_ = 0, swing_pitch_ = 0, yaw_ = 0;
     Footprint support_print_;
     Transform path_from_world_;
     StepPlan plan_;

@@ -71,7 +71,7 @@ Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s) {
         for (std::size_t k = 0; k < kKnots; ++k) {
             rows[k][k] += weight[k];
             if (k + 1 < kKnots) {
-                constexpr double kSmooth = 0.05;
+                constexpr double kSmooth = 0.03;
                 rows[k][k] += kSmooth;
                 rows[k + 1][k + 1] += kSmooth;
                 rows[k][k + 1] -= kSmooth;
@@ -155,12 +155,12 @@ Curve1 plan_height(const HeightPlan& plan) {
                 now += value[s][i] * y[i];
             }
             const double lo = plan.bands[s].lowest - base, hi = plan.bands[s].highest - base;
-            // The middle of the band pulls a little everywhere, so that the curve is determined.
-            add(value[s], (lo + hi) / 2 - value0[s], 0.2);
+            // What is wanted pulls a little everywhere, so that the curve is determined.
+            add(value[s], lerp(lo, hi, plan.bands[s].wanted) - value0[s], 0.07);
             if (round > 0 && (now > hi || now < lo)) {
                 add(value[s], (now > hi ? hi : lo) - value0[s], 40);
             }
-            add(bend[s], -bend0[s], 5e-5 * T * T);
+            add(bend[s], -bend0[s], 4e-5 * T * T);
         }
         add({0, 0, 0, 1, 0}, plan.to.position - base, pinned);
         add({0, 0, 0, 0, 1}, 0, plan.end_is_free ? 1e-2 : 1e6);
