@@ -24,10 +24,11 @@ constexpr double kBoundaryLead = 0.065;  // of the stroke
 constexpr double kRestLag = 0.01;       // of the stroke: what the living rest after the last step makes good
 constexpr double kClearance_m = 0.022;
 constexpr double kBrake = 6.5;      // at touch down, in units of way / time^2
+constexpr double kLeave = 3.0;      // after toe off, in the same units
 constexpr double kSetDown_m = 1.6;  // the same upward, in m
 // Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
 // off (20), and the shortest of a leg that stands (24.4).
-constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9775;
+constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9788;
 
 class Planner {
  public:
@@ -338,6 +339,9 @@ class Planner {
         to.acceleration.z -=
             (first_ ? 1.0 : 1) * kBrake * (to.position.z - from.position.z) / (d * d);
         to.acceleration.y += (first_ ? 0.8 : 1) * kSetDown_m / (d * d);
+        if (planted && !first_) {
+            from.acceleration.z += kLeave * (to.position.z - from.position.z) / (d * d);
+        }
         const Curve1 toes =
             minimum_jerk({lift, bend}, {{lift + 0.4 * d, radians(6)}}, {strike, {}});
         auto height_at = [&](double part, double clearance) {
