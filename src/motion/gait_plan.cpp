@@ -19,11 +19,11 @@ constexpr double kSwingKnee = radians(60);
 constexpr double kFlatAfterStrike = 0.17,
                  kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
 constexpr double kList = radians(2.5);
-constexpr double kSway = 0.0125;        // of the height, to either side
+constexpr double kSway_m = 0.0205;      // to either side, at any height
 constexpr double kBoundaryLead = 0.065;  // of the stroke
 constexpr double kRestLag = 0.01;       // of the stroke: what the living rest after the last step makes good
 constexpr double kClearance_m = 0.022;
-constexpr double kBrake = 6.5;      // at touch down, in units of way / time^2
+constexpr double kBrake = 6.0;      // at touch down, in units of way / time^2
 constexpr double kLeave = 3.0;      // after toe off, in the same units
 constexpr double kSetDown_m = 1.6;  // the same upward, in m
 // Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
@@ -124,11 +124,11 @@ class Planner {
         plan_.pelvis_path.z = plan_travel({now.position.z, now.velocity.z, 0}, to, T);
         // Over the support foot in the middle, back over the midline at the border, on the way to
         // the other foot.
-        const double sway = kSway * f_.height_m;
+        const double sway = kSway_m;
         const double rate = sway * kPi / n_;
         Motion1 aside_now{now.position.x, now.velocity.x, 0};
         Motion1 aside_end{midline, last_ ? 0 : -side_ * rate, 0};
-        const double peak = midline + side_ * sway * (whole_ ? 1 : 0.55);
+        const double peak = midline + side_ * sway * (whole_ ? 1 : 0.48);
         plan_.pelvis_path.x = minimum_jerk({0, aside_now}, {{T / 2, peak}}, {T, aside_end});
     }
 
@@ -141,7 +141,7 @@ class Planner {
         plan_.pelvis_yaw = minimum_jerk({0, before}, {}, {T, after});
         const double rate = side_ * kList * kPi / n_;
         plan_.pelvis_list = minimum_jerk({0, {0, first_ ? 0 : rate, 0}},
-                                         {{T / 2, side_ * kList * (whole_ ? 1 : 0.8)}},
+                                         {{(first_ ? 0.6 : 0.5) * T, side_ * kList * (whole_ ? 1 : first_ ? 1.5 : 0.8)}},
                                          {T, {0, last_ ? 0 : -rate, 0}});
         const double swing =
             clamp(radians(36) * x_ / (0.41 * f_.height_m), radians(5), radians(30)) * 0.75;
