@@ -11,6 +11,6 @@ if(PUPPETRI_FUZZ)
     target_include_directories(fuzz_parse SYSTEM PRIVATE "${PEGTL_INCLUDE_DIR}")
     target_compile_options(fuzz_parse PRIVATE -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined)
     target_link_options(fuzz_parse PRIVATE -fsanitize=fuzzer,address,undefined)
-    add_test(NAME fuzz_parse COMMAND fuzz_parse -runs=30000 -seed=1 -max_len=2000 -timeout=10
+    add_test(NAME fuzz_parse COMMAND fuzz_parse -runs=2000 -seed=1 -max_len=600 -timeout=10
         "-dict=${CMAKE_CURRENT_SOURCE_DIR}/tests/fuzz/pup.dict" "${CMAKE_CURRENT_SOURCE_DIR}/tests/corpus")
 endif()
