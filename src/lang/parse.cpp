@@ -529,4 +529,6 @@ Parsed parse(std::string_view text, std::string_view filename, std::uint32_t fil
     return out;
 }
 
+std::span<const std::string_view> keywords() { return kKeywords; }
+
 }  // namespace puppetri::lang

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The examples of docs/language.md. A block ```pup is a piece of a file, a block ```pup scene is a whole scene.
+// The examples of docs/language.md. A block ```pup is a piece of a file, a block ```pup scene is a
+// whole scene.
 #pragma once
 #include <fstream>
 #include <sstream>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The reference of the language says nothing that the parser does not: every example parses.
+#include "lang/language_doc.h"
+
 #include <doctest/doctest.h>
 
-#include "lang/language_doc.h"
 #include "lang/survive.h"
 #include "puppetri/lang/units.h"
-#include "../../src/lang/token.h"
 
 using namespace puppetri;
 using namespace puppetri::lang;
@@ -16,8 +16,9 @@ TEST_CASE("every example of docs/language.md parses [golden]") {
     for (const testing::DocExample& example : examples) {
         const Parsed result = parse(example.text, "docs/language.md");
         for (const Diagnostic& d : result.diagnostics) {
-            FAIL_CHECK("example at line " << example.line << ": "
-                                          << format_diagnostic(d, result.file.line_text(d.where.line), false));
+            FAIL_CHECK("example at line "
+                       << example.line << ": "
+                       << format_diagnostic(d, result.file.line_text(d.where.line), false));
         }
         CHECK_MESSAGE(testing::broken_law(example.text) == "", example.text);
     }
@@ -25,7 +26,7 @@ TEST_CASE("every example of docs/language.md parses [golden]") {
 
 TEST_CASE("the reference tells of every keyword and every unit [golden]") {
     const std::string page = testing::doc_page();
-    for (const std::string_view word : kKeywords) {
+    for (const std::string_view word : keywords()) {
         CHECK_MESSAGE(page.find(word) != std::string::npos, word);
     }
     for (const std::string& unit : unit_names()) {
