@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "puppetri/base/require.h"
+
 namespace puppetri::figure {
 namespace {
 
@@ -161,9 +163,25 @@ class Contourer {
         Node& n = nodes_[index];
         for (int c = 0; c < 8; ++c) {
             const Vec3 p = n.low + Vec3{(c & 1) ? size : 0, (c & 2) ? size : 0, (c & 4) ? size : 0};
-            const double d = shape_.distance(model(p), active(n));
-            n.corner[static_cast<std::size_t>(c)] = static_cast<float>(d == 0 ? 1e-9 : d);
+            n.corner[static_cast<std::size_t>(c)] = corner_value(p, active(n));
         }
+    }
+
+    // The function at a lattice point, evaluated once for all cells that meet there.
+    float corner_value(Vec3 p, std::span<const std::uint16_t> near) {
+        const double finest = cell_size(kDeepest);
+        const auto step = [&](double v) { return static_cast<std::uint64_t>((v - grid_.low) / finest + 0.5); };
+        const std::uint64_t key = step(p.x) << 40 | step(p.y) << 20 | step(p.z);
+        std::size_t slot = (key * 0x9E3779B97F4A7C15u) >> (64 - kTableBits);
+        while (known_[slot].key != key && known_[slot].key != kUnknown) {
+            slot = (slot + 1) & (known_.size() - 1);
+        }
+        if (known_[slot].key == kUnknown) {
+            PUP_REQUIRE(++known_count_ < known_.size());
+            const double d = shape_.distance(model(p), near);
+            known_[slot] = {key, static_cast<float>(d == 0 ? 1e-9 : d)};
+        }
+        return known_[slot].value;
     }
 
     bool leaf(std::uint32_t n) const { return nodes_[n].children == kNone; }
@@ -283,7 +301,7 @@ class Contourer {
         }
         normals_.resize(positions_.size());
         collect_active();
-        project(2);
+        project();
         std::vector<Vec3> middle(positions_.size());
         std::vector<std::uint32_t> degree(positions_.size());
         for (int round = 0; round < 3; ++round) {
@@ -301,23 +319,27 @@ class Contourer {
                 const Vec3 way = middle[i] * (1.0 / degree[i]) - positions_[i];
                 positions_[i] = positions_[i] + (way - normals_[i] * dot(way, normals_[i])) * 0.6;
             }
-            project(1);
+            project();
         }
-        project(2);
+        project();
+        for (std::size_t i = 0; i < positions_.size(); ++i) {
+            normals_[i] = normalized(shape_.sample(positions_[i], near(i)).gradient, {0, 1, 0});
+        }
     }
 
-    // The cones that matter around a vertex: those of its cell and of the neighbours it may slide into.
+    // The cones that matter around a vertex: where it is and where it may slide to.
     void collect_active() {
         vertex_active_.resize(positions_.size());
         for (std::size_t i = 0; i < positions_.size(); ++i) {
-            const double size = cell_size(nodes_[owners_[i]].depth);
-            const Vec3 low = nodes_[owners_[i]].low;
+            const Node& cell = nodes_[owners_[i]];
+            const double size = cell_size(cell.depth);
+            const Vec3 p = positions_[i];
+            const double slack = length(model(cell.low + Vec3{size, size, size}) - model(cell.low));
             Bounds box;
-            box.add(model(low - Vec3{size, size, size}));
-            box.add(model(low + Vec3{size, size, size} * 2));
+            box.add(p);
             const auto first = static_cast<std::uint32_t>(active_.size());
             for (int c = 0; c < shape_.size(); ++c) {
-                if (shape_.reach(c).overlaps(box)) {
+                if (shape_.reach(c).overlaps(box.grown(slack)) && shape_.near(c, p, slack)) {
                     active_.push_back(static_cast<std::uint16_t>(c));
                 }
             }
@@ -325,22 +347,30 @@ class Contourer {
         }
     }
 
-    void project(int steps) {
+    std::span<const std::uint16_t> near(std::size_t vertex) const {
+        return {active_.data() + vertex_active_[vertex][0], vertex_active_[vertex][1]};
+    }
+
+    // One Newton step for every vertex; leaves the gradient's direction where it came from.
+    void project() {
         for (std::size_t i = 0; i < positions_.size(); ++i) {
-            const std::span<const std::uint16_t> near{active_.data() + vertex_active_[i][0], vertex_active_[i][1]};
-            for (int s = 0; s <= steps; ++s) {
-                const FieldSample f = shape_.sample(positions_[i], near);
-                const double steep = std::max(dot(f.gradient, f.gradient), 0.05);
-                normals_[i] = normalized(f.gradient, {0, 1, 0});
-                if (s < steps) {
-                    positions_[i] = positions_[i] - f.gradient * (f.distance / steep);
-                }
-            }
+            const FieldSample f = shape_.sample(positions_[i], near(i));
+            normals_[i] = normalized(f.gradient, {0, 1, 0});
+            positions_[i] = positions_[i] - f.gradient * (f.distance / std::max(dot(f.gradient, f.gradient), 0.05));
         }
     }
 
+    static constexpr int kDeepest = 12, kTableBits = 17;
+    static constexpr std::uint64_t kUnknown = ~std::uint64_t{0};
+    struct Known {
+        std::uint64_t key = kUnknown;
+        float value = 0;
+    };
+
     const ImplicitShape& shape_;
     const ContourGrid& grid_;
+    std::vector<Known> known_ = std::vector<Known>(std::size_t{1} << kTableBits);  // open addressing
+    std::size_t known_count_ = 0;
     std::vector<Node> nodes_;
     std::vector<std::uint16_t> active_;
     std::vector<Vec3> positions_, normals_;

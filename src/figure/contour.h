@@ -28,7 +28,6 @@ struct Contour {
     std::vector<Vec3> positions_model;
     std::vector<Vec3> normals_model;
     std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
-    std::vector<std::array<std::uint32_t, 2>> edges;      // each once, low index first, sorted; made by who needs them
 };
 
 // Source  T. Ju, F. Losasso, S. Schaefer, J. Warren, "Dual contouring of Hermite data", SIGGRAPH 2002 (the recursion);

@@ -14,31 +14,6 @@
 namespace puppetri::figure {
 namespace {
 
-FieldSample sample_cone(const RoundCone& c, Vec3 p_model) {
-    const Vec3 turned = rotate(conjugate(c.model_from_local), p_model - c.origin_model);
-    const Vec3 p{turned.x / c.scale.x, turned.y / c.scale.y, turned.z / c.scale.z};
-    const Vec3 axis = c.b - c.a;
-    const double length_m = length(axis);
-    Vec3 centre = c.a;
-    double radius = c.radius_a;
-    if (length_m > 1e-9) {
-        const Vec3 along = axis * (1 / length_m);
-        const Vec3 from_a = p - c.a;
-        const double x = dot(from_a, along);
-        const double y = length(from_a - along * x);
-        const double sine = std::clamp((c.radius_a - c.radius_b) / length_m, -0.98, 0.98);
-        const double s = std::clamp(x - y * sine / std::sqrt(1 - sine * sine), 0.0, length_m);
-        centre = c.a + along * s;
-        radius = c.radius_a + (c.radius_b - c.radius_a) * (s / length_m);
-    }
-    const Vec3 away = p - centre;
-    const double d = length(away);
-    const Vec3 n = normalized(away, {0, 1, 0});
-    const Vec3 g{n.x / c.scale.x, n.y / c.scale.y, n.z / c.scale.z};
-    const double steepness = std::max(length(g), 1e-9);
-    return {(d - radius) / steepness, rotate(c.model_from_local, g * (1 / steepness))};
-}
-
 FieldSample smooth_min(const FieldSample& a, const FieldSample& b, double k) {
     const double h = k > 0 ? std::max(0.0, 1 - std::fabs(a.distance - b.distance) / k) : 0.0;
     const FieldSample& nearer = a.distance <= b.distance ? a : b;
@@ -50,6 +25,57 @@ FieldSample smooth_min(const FieldSample& a, const FieldSample& b, double k) {
 FieldSample negative(const FieldSample& s) { return {-s.distance, -s.gradient}; }
 
 }  // namespace
+
+// Where the nearest sphere of a cone stands, seen in the cone's own frame.
+struct ImplicitShape::Foot {
+    Vec3 away;  // from the sphere's centre to the point
+    double distance = 0, radius = 0;
+};
+
+ImplicitShape::Foot ImplicitShape::foot_of(const Prepared& c, Vec3 p_model) {
+    Vec3 p = p_model - c.origin_model;
+    if (c.turned) {
+        p = rotate(c.local_from_model, p);
+    }
+    if (c.squashed) {
+        p = {p.x * c.inverse_scale.x, p.y * c.inverse_scale.y, p.z * c.inverse_scale.z};
+    }
+    Vec3 from_a = p - c.a;
+    if (c.length_m == 0) {
+        return {from_a, length(from_a), c.radius_a};
+    }
+    const double x = dot(from_a, c.along);
+    const double y = std::sqrt(std::max(0.0, dot(from_a, from_a) - x * x));
+    const double s = std::clamp(x - y * c.tangent, 0.0, c.length_m);
+    const Vec3 away = from_a - c.along * s;
+    return {away, length(away), c.radius_a + c.widening * s};
+}
+
+double ImplicitShape::distance_to(const Prepared& c, Vec3 p_model) {
+    const Foot f = foot_of(c, p_model);
+    if (!c.squashed) {
+        return f.distance - f.radius;
+    }
+    const Vec3 g{f.away.x * c.inverse_scale.x, f.away.y * c.inverse_scale.y, f.away.z * c.inverse_scale.z};
+    return (f.distance - f.radius) * f.distance / std::max(length(g), 1e-12);
+}
+
+FieldSample ImplicitShape::sample_of(const Prepared& c, Vec3 p_model) {
+    const Foot f = foot_of(c, p_model);
+    const Vec3 n = f.distance > 0 ? f.away * (1 / f.distance) : Vec3{0, 1, 0};
+    if (!c.squashed) {
+        return {f.distance - f.radius, c.turned ? rotate(conjugate(c.local_from_model), n) : n};
+    }
+    Vec3 g{n.x * c.inverse_scale.x, n.y * c.inverse_scale.y, n.z * c.inverse_scale.z};
+    const double steepness = std::max(length(g), 1e-9);
+    g = g * (1 / steepness);
+    return {(f.distance - f.radius) / steepness, c.turned ? rotate(conjugate(c.local_from_model), g) : g};
+}
+
+bool ImplicitShape::near(int i, Vec3 p, double slack_m) const {
+    const Prepared& c = prepared_[static_cast<std::size_t>(i)];
+    return distance_to(c, p) < 2 * c.blend_m + slack_m;
+}
 
 void Bounds::add(Vec3 p) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -77,22 +103,63 @@ void ImplicitShape::add(const RoundCone& cone) {
             box.add(cone.origin_model + rotate(cone.model_from_local, scaled));
         }
     }
+    Prepared c;
+    c.origin_model = cone.origin_model;
+    c.a = cone.a;
+    c.inverse_scale = {1 / cone.scale.x, 1 / cone.scale.y, 1 / cone.scale.z};
+    c.local_from_model = conjugate(cone.model_from_local);
+    c.turned = !(cone.model_from_local == Quat{});
+    c.squashed = !(cone.scale == Vec3{1, 1, 1});
+    c.carve = cone.carve;
+    c.radius_a = cone.radius_a;
+    c.blend_m = cone.blend_m;
+    const double l = length(cone.b - cone.a);
+    if (l > 1e-9) {
+        const double sine = std::clamp((cone.radius_a - cone.radius_b) / l, -0.98, 0.98);
+        c.length_m = l;
+        c.along = (cone.b - cone.a) * (1 / l);
+        c.tangent = sine / std::sqrt(1 - sine * sine);
+        c.widening = (cone.radius_b - cone.radius_a) / l;
+    }
+    prepared_.push_back(c);
     tight_.push_back(box);
     // The smooth minimum acts where two distances differ by less than `blend`; what is twice as far cannot move the
     // sign even through a second seam.
     reach_.push_back(box.grown(2 * cone.blend_m));
 }
 
+void ImplicitShape::set_relief(double (*relief)(const void*, Vec3), const void* context) {
+    relief_ = relief;
+    relief_context_ = context;
+}
+
 double ImplicitShape::distance(Vec3 p, std::span<const std::uint16_t> active) const {
-    return sample(p, active).distance;
+    double all = 1e3;
+    for (const std::uint16_t i : active) {
+        const Prepared& c = prepared_[i];
+        const double one = distance_to(c, p);
+        const double a = c.carve ? -all : all;
+        const double h = std::max(0.0, 1 - std::fabs(a - one) / c.blend_m);
+        const double joined = std::min(a, one) - c.blend_m * h * h / 4;
+        all = c.carve ? -joined : joined;
+    }
+    return relief_ == nullptr || std::fabs(all) > 0.02 ? all : all - relief_(relief_context_, p);
 }
 
 FieldSample ImplicitShape::sample(Vec3 p, std::span<const std::uint16_t> active) const {
     FieldSample all{1e3, {0, 1, 0}};
     for (const std::uint16_t i : active) {
-        const RoundCone& c = cones_[i];
-        const FieldSample one = sample_cone(c, p);
+        const Prepared& c = prepared_[i];
+        const FieldSample one = sample_of(c, p);
         all = c.carve ? negative(smooth_min(negative(all), one, c.blend_m)) : smooth_min(all, one, c.blend_m);
+    }
+    if (relief_ != nullptr && std::fabs(all.distance) < 0.02) {
+        // Central differences over half a millimetre: the steps of the relief are a few millimetres wide.
+        constexpr double kStep = 0.0005;
+        const auto at = [&](Vec3 way) { return relief_(relief_context_, p + way); };
+        const auto slope = [&](Vec3 way) { return (at(way) - at(-way)) / (2 * kStep); };
+        all.distance -= at({});
+        all.gradient = all.gradient - Vec3{slope({kStep, 0, 0}), slope({0, kStep, 0}), slope({0, 0, kStep})};
     }
     return all;
 }

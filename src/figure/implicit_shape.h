@@ -49,10 +49,30 @@ class ImplicitShape {
 
     // The joined function of the cones listed, in that order. An empty list gives a large distance.
     double distance(Vec3 p_model, std::span<const std::uint16_t> active) const;
+    // False when cone i cannot matter for the sign or the surface within `slack_m` of a point.
+    bool near(int i, Vec3 p_model, double slack_m) const;
     FieldSample sample(Vec3 p_model, std::span<const std::uint16_t> active) const;
 
+    // Metres by which the surface stands out at a point; context outlives the shape. None: nowhere.
+    void set_relief(double (*relief)(const void* context, Vec3 p_model), const void* context);
+
    private:
+    // What every evaluation needs of a cone, worked out once.
+    struct Prepared {
+        Vec3 origin_model, a, along, inverse_scale;
+        Quat local_from_model;
+        double length_m = 0, tangent = 0, radius_a = 0, widening = 0, blend_m = 0;
+        bool turned = false, squashed = false, carve = false;
+    };
+    struct Foot;
+    static Foot foot_of(const Prepared& c, Vec3 p_model);
+    static double distance_to(const Prepared& c, Vec3 p_model);
+    static FieldSample sample_of(const Prepared& c, Vec3 p_model);
+
+    double (*relief_)(const void*, Vec3) = nullptr;
+    const void* relief_context_ = nullptr;
     std::vector<RoundCone> cones_;
+    std::vector<Prepared> prepared_;
     std::vector<Bounds> tight_, reach_;
 };
 

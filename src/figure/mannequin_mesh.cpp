@@ -24,9 +24,13 @@ class Tailor {
         for (int i = 0; i < shape.size(); ++i) {
             everything_.push_back(static_cast<std::uint16_t>(i));
         }
-        rebuild_edges();
+        locked_.assign(body.positions_model.size(), 0);
         for (int which = 0; which < kBorderCount; ++which) {
-            cut(which);
+            cut(which, 0);
+            if (which != 1) {
+                // A second cut gives the thickness of the cloth its own strip of triangles.
+                cut(which, zone_inside(which) == Zone::kHair ? kHem : -kHem);
+            }
         }
     }
 
@@ -36,7 +40,7 @@ class Tailor {
     static constexpr double kSnap = 0.32;  // an edge is not cut nearer to its end than this; a vertex slides instead
 
     double value(int which, Vec3 p) const {
-        return border_applies(marks_, which, p) ? border(marks_, which, p) : marks_.unit_m;
+        return border_applies(marks_, which, p) ? border(marks_, which, p) : 1.0;
     }
 
     void onto_surface(std::uint32_t v) {
@@ -48,53 +52,48 @@ class Tailor {
         }
     }
 
-    void cut(int which) {
+    // Along the set where the border's function is `level`; level 0 also divides the zones.
+    void cut(int which, double level) {
         auto& p = body_.positions_model;
         std::vector<double> g(p.size());
         for (std::size_t v = 0; v < p.size(); ++v) {
-            g[v] = value(which, p[v]);
+            g[v] = value(which, p[v]) - level;
         }
-        // Slide.
-        std::vector<double> shift(p.size(), 1e9);
-        std::vector<Vec3> target(p.size());
-        for (const auto& e : body_.edges) {
-            if ((g[e[0]] < 0) == (g[e[1]] < 0)) {
-                continue;
+        // Slide: a vertex near to where its edges cross goes to the nearest crossing.
+        shift_.assign(p.size(), 1e9);
+        target_.resize(p.size());
+        for_crossing_edges(g, [&](std::uint32_t from, std::uint32_t to, double t) {
+            const Vec3 where = p[from] + (p[to] - p[from]) * t;
+            const std::uint32_t v = t < kSnap ? from : t > 1 - kSnap ? to : kNone;
+            if (v != kNone && !locked_[v] && length(where - p[v]) < shift_[v]) {
+                shift_[v] = length(where - p[v]);
+                target_[v] = where;
             }
-            const double t = g[e[0]] / (g[e[0]] - g[e[1]]);
-            const Vec3 where = p[e[0]] + (p[e[1]] - p[e[0]]) * t;
-            const std::uint32_t v = t < kSnap ? e[0] : t > 1 - kSnap ? e[1] : kNone;
-            if (v != kNone && length(where - p[v]) < shift[v]) {
-                shift[v] = length(where - p[v]);
-                target[v] = where;
-            }
-        }
+        });
         for (std::uint32_t v = 0; v < p.size(); ++v) {
-            if (shift[v] < 1e9) {
-                p[v] = target[v];
+            if (shift_[v] < 1e9) {
+                p[v] = target_[v];
                 onto_surface(v);
                 g[v] = 0;
+                locked_[v] = 1;
             }
         }
-        // Divide.
-        std::vector<std::uint32_t> middle(body_.edges.size(), kNone);
-        for (std::size_t i = 0; i < body_.edges.size(); ++i) {
-            const auto e = body_.edges[i];
-            if (g[e[0]] * g[e[1]] >= 0) {
-                continue;
-            }
-            const double t = g[e[0]] / (g[e[0]] - g[e[1]]);
-            middle[i] = static_cast<std::uint32_t>(p.size());
-            p.push_back(p[e[0]] + (p[e[1]] - p[e[0]]) * t);
+        // Divide what still crosses.
+        crossings_.clear();
+        for_crossing_edges(g, [&](std::uint32_t from, std::uint32_t to, double t) {
+            crossings_.push_back({from, to, static_cast<std::uint32_t>(p.size())});
+            p.push_back(p[from] + (p[to] - p[from]) * t);
             body_.normals_model.push_back({});
-            onto_surface(middle[i]);
+            onto_surface(crossings_.back().middle);
             g.push_back(0);
-        }
+            locked_.push_back(1);
+        });
+        std::sort(crossings_.begin(), crossings_.end());
         const std::size_t before = body_.triangles.size();
         for (std::size_t t = 0; t < before; ++t) {
-            divide(t, middle);
+            divide(t, g);
         }
-        for (std::size_t t = 0; t < body_.triangles.size(); ++t) {
+        for (std::size_t t = 0; t < body_.triangles.size() && level == 0; ++t) {
             const auto& c = body_.triangles[t];
             // Vertices on the border say nothing; where all are, the middle decides.
             double sum = g[c[0]] + g[c[1]] + g[c[2]];
@@ -106,16 +105,36 @@ class Tailor {
                 zones_[t] = zone_inside(which);
             }
         }
-        rebuild_edges();
     }
 
-    void divide(std::size_t t, const std::vector<std::uint32_t>& middle) {
+    static bool crosses(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
+
+    // Each edge once (its other triangle has it the other way round): use(low vertex, high vertex, share of the way).
+    template <class Use>
+    void for_crossing_edges(const std::vector<double>& g, Use&& use) {
+        const std::size_t count = body_.triangles.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto t = body_.triangles[i];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t from = t[k], to = t[(k + 1) % 3];
+                if (from < to && crosses(g[from], g[to])) {
+                    use(from, to, g[from] / (g[from] - g[to]));
+                }
+            }
+        }
+    }
+
+    void divide(std::size_t t, const std::vector<double>& g) {
         const auto c = body_.triangles[t];
-        std::array<std::uint32_t, 3> m;  // m[k] on the edge c[k], c[k + 1]
+        std::array<std::uint32_t, 3> m{kNone, kNone, kNone};  // m[k] on the edge c[k], c[k + 1]
         int crossed = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            m[k] = middle[edge_index(c[k], c[(k + 1) % 3])];
-            crossed += m[k] != kNone;
+            const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+            if (crosses(g[a], g[b])) {
+                const Crossing wanted{std::min(a, b), std::max(a, b), 0};
+                m[k] = std::lower_bound(crossings_.begin(), crossings_.end(), wanted)->middle;
+                ++crossed;
+            }
         }
         const auto extra = [&](std::array<std::uint32_t, 3> triangle) {
             body_.triangles.push_back(triangle);
@@ -130,60 +149,28 @@ class Tailor {
                 return;
             }
             if (crossed == 2 && m[k] == kNone) {  // the corner c[last] is cut off
-                const std::uint32_t on_next = m[next], on_last = m[last];
-                body_.triangles[t] = {c[last], on_last, on_next};
-                extra({c[k], c[next], on_next});
-                extra({c[k], on_next, on_last});
+                body_.triangles[t] = {c[last], m[last], m[next]};
+                extra({c[k], c[next], m[next]});
+                extra({c[k], m[next], m[last]});
                 return;
             }
         }
     }
 
-    std::size_t edge_index(std::uint32_t a, std::uint32_t b) const {
-        const std::array<std::uint32_t, 2> e{std::min(a, b), std::max(a, b)};
-        auto at = std::lower_bound(body_.edges.begin() + first_edge_[e[0]], body_.edges.begin() + first_edge_[e[0] + 1], e);
-        return static_cast<std::size_t>(at - body_.edges.begin());
-    }
-
-    void rebuild_edges() {
-        body_.edges.clear();
-        for (const auto& t : body_.triangles) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (t[k] < t[(k + 1) % 3]) {  // closed: the neighbour has the edge the other way round
-                    body_.edges.push_back({t[k], t[(k + 1) % 3]});
-                }
-            }
-        }
-        index_edges();
-    }
-
-    void index_edges() {
-        // Buckets by the lower vertex; inside a bucket the few edges are sorted.
-        first_edge_.assign(body_.positions_model.size() + 1, 0);
-        for (const auto& e : body_.edges) {
-            ++first_edge_[e[0] + 1];
-        }
-        for (std::size_t i = 1; i < first_edge_.size(); ++i) {
-            first_edge_[i] += first_edge_[i - 1];
-        }
-        std::vector<std::array<std::uint32_t, 2>> sorted(body_.edges.size());
-        std::vector<std::uint32_t> next(first_edge_.begin(), first_edge_.end() - 1);
-        for (const auto& e : body_.edges) {
-            sorted[next[e[0]]++] = e;
-        }
-        for (std::size_t v = 0; v + 1 < first_edge_.size(); ++v) {
-            std::sort(sorted.begin() + first_edge_[v], sorted.begin() + first_edge_[v + 1]);
-        }
-        body_.edges = std::move(sorted);
-    }
+    struct Crossing {
+        std::uint32_t low, high, middle;  // the ends of the edge, the vertex on it
+        bool operator<(const Crossing& o) const { return low != o.low ? low < o.low : high < o.high; }
+    };
 
     Contour& body_;
     const ImplicitShape& shape_;
     const Landmarks& marks_;
     std::vector<Zone> zones_;
-    std::vector<std::uint8_t> assigned_;
+    std::vector<std::uint8_t> assigned_, locked_;  // per triangle; per vertex: it lies on a cut
     std::vector<std::uint16_t> everything_;
-    std::vector<std::uint32_t> first_edge_;
+    std::vector<double> shift_;
+    std::vector<Vec3> target_;
+    std::vector<Crossing> crossings_;
 };
 
 std::array<float, 3> floats(Vec3 v) {
@@ -195,7 +182,9 @@ std::array<float, 3> floats(Vec3 v) {
 Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
     PUP_REQUIRE(skeleton.height_m > 0);
     const Landmarks marks = landmarks_of(skeleton);
-    const ImplicitShape shape = mannequin_shape(marks);
+    ImplicitShape shape = mannequin_shape(marks);
+    shape.set_relief([](const void* context, Vec3 p) { return relief(*static_cast<const Landmarks*>(context), p); },
+                     &marks);
     const ContourGrid grid = mannequin_grid(marks);
     Contour body = contour(shape, grid);
     const Tailor tailor(body, shape, marks);
@@ -211,7 +200,7 @@ Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
     mesh.joints.reserve(n);
     mesh.weights.reserve(n);
     for (std::size_t v = 0; v < n; ++v) {
-        mesh.positions.push_back(floats(body.positions_model[v]));
+        mesh.positions.push_back(floats(body.positions_model[v] * marks.scale));
         mesh.normals.push_back(floats(body.normals_model[v]));
         const SkinBinding b = weights.at(body.positions_model[v]);
         mesh.joints.push_back(b.joints);

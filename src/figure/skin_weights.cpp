@@ -101,23 +101,22 @@ SkinWeights::SkinWeights(const Skeleton& skeleton, const Landmarks& marks) : mar
 }
 
 SkinBinding SkinWeights::at(Vec3 p) const {
-    const double u = marks_.unit_m;
     const std::size_t s = p.x >= 0 ? 0 : 1;
     const double out = std::fabs(p.x);
     // The arm begins at an oblique plane: further in on top of the shoulder than in the armpit, and not below it.
     const Vec3 shoulder = marks_.shoulder[s];
-    const double below = (shoulder.y - p.y) / u;
-    const double arm_share = ramp(out - std::fabs(shoulder.x), (0.012 + 0.25 * below) * u, 0.065 * u) *
+    const double below = (shoulder.y - p.y);
+    const double arm_share = ramp(out - std::fabs(shoulder.x), (0.012 + 0.25 * below), 0.065) *
                              (1 - ramp(below, 0.13, 0.04));
     // The leg begins at the line from the crotch up to the hip bone.
     const Vec3 hip = marks_.hip[s];
-    const double rise = 0.55 * std::clamp(out - std::fabs(hip.x), -0.09 * u, 0.09 * u);
-    const double leg_share = ramp(hip.y + rise - p.y, 0.012 * u, 0.085 * u);
+    const double rise = 0.55 * std::clamp(out - std::fabs(hip.x), -0.09, 0.09);
+    const double leg_share = ramp(hip.y + rise - p.y, 0.012, 0.085);
     Sum sum;
     trunk(p, (1 - arm_share) * (1 - leg_share), sum);
     arm(p, s, arm_share, sum);
     // Between the legs both pull alike.
-    const double left = ramp(p.x, 0, 0.022 * u);
+    const double left = ramp(p.x, 0, 0.022);
     leg(p, 0, leg_share * (1 - arm_share) * left, sum);
     leg(p, 1, leg_share * (1 - arm_share) * (1 - left), sum);
     return sum.strongest();
@@ -127,19 +126,18 @@ void SkinWeights::trunk(Vec3 p, double share, Sum& sum) const {
     if (share <= 0) {
         return;
     }
-    const double u = marks_.unit_m;
-    const double spine = ramp(p.y, marks_.spine.y, 0.07 * u), chest = ramp(p.y, marks_.chest.y, 0.075 * u);
-    const double upper = ramp(p.y, marks_.upper_chest.y, 0.08 * u);
+    const double spine = ramp(p.y, marks_.spine.y, 0.07), chest = ramp(p.y, marks_.chest.y, 0.075);
+    const double upper = ramp(p.y, marks_.upper_chest.y, 0.08);
     // Neck and head bend along a slope: higher at the back than under the chin.
     const double slope = 0.35 * (p.z - marks_.neck.z);
-    const double neck = ramp(p.y - 0.0 * slope, marks_.neck.y + 0.005 * u, 0.045 * u) *
-                        (1 - ramp(std::fabs(p.x), 0.10 * u, 0.035 * u));
-    const double head = ramp(p.y + slope, marks_.head.y + 0.012 * u, 0.032 * u);
+    const double neck = ramp(p.y - 0.0 * slope, marks_.neck.y + 0.005, 0.045) *
+                        (1 - ramp(std::fabs(p.x), 0.10, 0.035));
+    const double head = ramp(p.y + slope, marks_.head.y + 0.012, 0.032);
     // The collar bone carries the top of the shoulder.
     const std::size_t s = p.x >= 0 ? 0 : 1;
     const double shoulder_x = std::fabs(marks_.shoulder[s].x);
     const double clavicle = ramp(std::fabs(p.x), 0.6 * shoulder_x, 0.45 * shoulder_x) *
-                            ramp(p.y, marks_.shoulder[s].y - 0.09 * u, 0.07 * u) * (1 - neck);
+                            ramp(p.y, marks_.shoulder[s].y - 0.09, 0.07) * (1 - neck);
     sum.add(hips_, share * (1 - spine));
     sum.add(spine_, share * spine * (1 - chest));
     sum.add(chest_, share * chest * (1 - upper));
@@ -154,15 +152,14 @@ void SkinWeights::arm(Vec3 p, std::size_t s, double share, Sum& sum) const {
     if (share <= 0) {
         return;
     }
-    const double u = marks_.unit_m;
     const Side& side = sides_[s];
     const double x = std::fabs(p.x), shoulder = std::fabs(marks_.shoulder[s].x);
     const double elbow_x = std::fabs(marks_.elbow[s].x), wrist_x = std::fabs(marks_.wrist[s].x);
     const double upper_m = elbow_x - shoulder, fore_m = wrist_x - elbow_x;
     const double twist = ramp(x, shoulder + 0.5 * upper_m, 0.38 * upper_m);
-    const double elbow = ramp(x, elbow_x, 0.042 * u);
+    const double elbow = ramp(x, elbow_x, 0.042);
     const double fore_twist = ramp(x, elbow_x + 0.5 * fore_m, 0.40 * fore_m);
-    const double wrist = ramp(x, wrist_x, 0.028 * u);
+    const double wrist = ramp(x, wrist_x, 0.028);
     sum.add(side.upper_arm, share * (1 - twist) * (1 - elbow));
     sum.add(side.upper_arm_twist, share * twist * (1 - elbow));
     sum.add(side.lower_arm, share * elbow * (1 - fore_twist) * (1 - wrist));
@@ -179,13 +176,13 @@ void SkinWeights::arm(Vec3 p, std::size_t s, double share, Sum& sum) const {
         const double length_m = length(way);
         along[f] = dot(p - j[0], way) / length_m;
         const Vec3 foot = j[0] + way * (std::clamp(along[f], 0.0, length_m) / length_m);
-        near[f] = length(p - foot) - (f == 0 ? 0.003 * u : 0);
+        near[f] = length(p - foot) - (f == 0 ? 0.003 : 0);
         best = std::min(best, near[f]);
     }
     double total = 0;
     std::array<double, 5> part{};
     for (std::size_t f = 0; f < 5; ++f) {
-        const double d = std::max(0.0, 1 - (near[f] - best) / (0.008 * u));
+        const double d = std::max(0.0, 1 - (near[f] - best) / (0.008));
         part[f] = d * d;
         total += part[f];
     }
@@ -193,8 +190,8 @@ void SkinWeights::arm(Vec3 p, std::size_t s, double share, Sum& sum) const {
     for (std::size_t f = 0; f < 5; ++f) {
         const auto& j = marks_.fingers[s][f];
         const double first = length(j[1] - j[0]), second = first + length(j[2] - j[1]);
-        const double mine = part[f] / total * ramp(along[f], 0.002 * u, (f == 0 ? 0.016 : 0.011) * u);
-        const double k1 = ramp(along[f], first, 0.009 * u), k2 = ramp(along[f], second, 0.008 * u);
+        const double mine = part[f] / total * ramp(along[f], 0.002, (f == 0 ? 0.016 : 0.011));
+        const double k1 = ramp(along[f], first, 0.009), k2 = ramp(along[f], second, 0.008);
         left -= mine;
         sum.add(side.fingers[f][0], share * wrist * mine * (1 - k1));
         sum.add(side.fingers[f][1], share * wrist * mine * k1 * (1 - k2));
@@ -207,12 +204,11 @@ void SkinWeights::leg(Vec3 p, std::size_t s, double share, Sum& sum) const {
     if (share <= 0) {
         return;
     }
-    const double u = marks_.unit_m;
     const Side& side = sides_[s];
-    const double knee = ramp(-p.y, -marks_.knee[s].y, 0.055 * u);
+    const double knee = ramp(-p.y, -marks_.knee[s].y, 0.055);
     // The ankle bends along a slope: higher in front.
-    const double ankle = ramp(marks_.ankle[s].y - p.y + 0.3 * (p.z - marks_.ankle[s].z), 0, 0.032 * u);
-    const double toes = ramp(p.z, marks_.toes[s].z, 0.022 * u);
+    const double ankle = ramp(marks_.ankle[s].y - p.y + 0.3 * (p.z - marks_.ankle[s].z), 0, 0.032);
+    const double toes = ramp(p.z, marks_.toes[s].z, 0.022);
     sum.add(side.upper_leg, share * (1 - knee));
     sum.add(side.lower_leg, share * knee * (1 - ankle));
     sum.add(side.foot, share * knee * ankle * (1 - toes));

@@ -57,9 +57,10 @@ Mesh make_stick_mesh(const Skeleton& skeleton, const Palette& palette) {
         }
         const double r = std::clamp(0.14 * l, 0.0034 * h, 0.017 * h);
         const auto joint = static_cast<std::uint16_t>(from);
+        const bool thin = r < 0.006 * h;  // fingers are of one colour
         const Transform place{shortest_arc({0, 1, 0}, way * (1 / l), {1, 0, 0}), start};
         append_revolution(mesh, rod(l, r), kSectors, place, kBones, &joint);
-        append_revolution(mesh, ball(r * 1.12, 6), kSectors, {{}, start}, kJoints, &joint);
+        append_revolution(mesh, ball(r * 1.12, 6), kSectors, {{}, start}, thin ? kBones : kJoints, &joint);
     };
     for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
         const Joint& one = skeleton.joints[j];
@@ -69,14 +70,12 @@ Mesh make_stick_mesh(const Skeleton& skeleton, const Palette& palette) {
         if (one.name == "head") {
             // A head as a ball, with a nose that says where it looks.
             const auto joint = static_cast<std::uint16_t>(j);
-            const double r = 0.52 * length(one.end_site_joint);
+            const double r = 0.42 * length(one.end_site_joint);
             const Vec3 middle = model_from_joint[j].translation + Vec3{0, length(one.end_site_joint) - r, 0.01 * h};
             append_revolution(mesh, ball(r, 14), 24, {{}, middle}, kHead, &joint);
             const Transform nose{about_x(kPi / 2), middle + Vec3{0, -0.1 * r, 0.9 * r}};
             append_revolution(mesh, rod(0.5 * r, 0.22 * r), kSectors, nose, kJoints, &joint);
-            continue;
-        }
-        if (length(one.end_site_joint) > 0) {
+        } else if (length(one.end_site_joint) > 0) {
             bone(j, model_from_joint[j] * one.end_site_joint);
         }
         const auto parent = static_cast<std::size_t>(one.parent.value);
