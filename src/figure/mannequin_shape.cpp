@@ -174,7 +174,7 @@ ImplicitShape mannequin_shape(const Landmarks& m) {
     for (int s = 0; s < 2; ++s) {
         add.level = 2;
         add.blend = 0.006;
-        add.blob(skull + mirrored(Vec3{0.030, -0.014, 0.074}, s), {0.013, 0.011, 0.012});  // lids
+        add.blob(skull + mirrored(Vec3{0.029, -0.014, 0.074}, s), {0.013, 0.011, 0.012});  // lids
         add.level = 1;
         add.blend = 0.008;
         add.blob(skull + mirrored(Vec3{0.079, -0.026, -0.010}, s), {0.011, 0.027, 0.019}, 0.15);  // ears
@@ -269,8 +269,8 @@ double border(const Landmarks& m, int which, Vec3 p) {
             return (0.016 + 0.036 * front * front * (3 - 2 * front) - 0.080 * back * back * (3 - 2 * back) - y);
         }
         case 1: {  // eyes: two upright ovals
-            const double x = (std::fabs(p.x) - 0.030) / 0.0082, y = (p.y - skull.y + 0.014) / 0.0105;
-            return (std::sqrt(x * x + y * y) - 1) * 0.009;
+            const double x = (std::fabs(p.x) - 0.029) / 0.0068, y = (p.y - skull.y + 0.014) / 0.0088;
+            return (std::sqrt(x * x + y * y) - 1) * 0.0078;
         }
         case 2: {  // the neckline of the shirt: a widening tube about the neck
             const Vec3 from = p - (m.neck + Vec3{0, -0.030, 0.010});

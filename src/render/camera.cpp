@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kKeysPerSecond = 8;
 constexpr double kSmoothing_s = 0.7;
-constexpr double kMargin = 0.9;                              // of the half picture that those kept in view may use
+constexpr double kMargin = 0.86;                             // of the half picture that those kept in view may use
 constexpr double kSmallestFov_rad = 0.209, kLargestFov_rad = 1.047;  // 12 and 60 degrees
 
 SimTime instant(double seconds) {

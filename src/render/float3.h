@@ -28,6 +28,11 @@ inline float smooth_step(float low, float high, float x) {
     const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
     return t * t * (3 - 2 * t);
 }
+// Rounded down; |x| < 2^31. Without SSE 4.1 std::floor is a call.
+inline int floor_int(float x) {
+    const int i = static_cast<int>(x);
+    return i - (x < static_cast<float>(i) ? 1 : 0);
+}
 inline Float3 float3(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }

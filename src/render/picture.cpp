@@ -270,7 +270,7 @@ Float3 PictureMaker::Data::background(Float3 d, float sun_share, Sample* sample)
         sample->depth = distance;
         sample->id = kGroundId;
     }
-    return environment.haze(albedo * falling, distance, d);
+    return environment.haze(albedo * falling, distance);
 }
 
 void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y, unsigned lanes,
@@ -389,7 +389,7 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
         const float grazing = 1 - std::max(0.0f, -dot(n, d[i]));
         const float g2 = grazing * grazing;
         shine = shine + environment.ambient({n.x, 0.6f + 0.4f * n.y, n.z}) * (s.ambient * (0.35f * g2 * g2 * grazing) * (0.35f + gloss));
-        out[i].light = environment.haze(shine, out[i].depth, d[i]);
+        out[i].light = environment.haze(shine, out[i].depth);
     }
 }
 
