@@ -57,6 +57,11 @@ inline DurationDraft computed(Expr e) {
 
 class Maker {
  public:
+    // References to places and transitions stay good: tests make few.
+    Maker() {
+        draft.places.reserve(10000);
+        draft.transitions.reserve(10000);
+    }
     NetDraft draft;
 
     // A place, made on first mention.
