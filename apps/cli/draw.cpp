@@ -23,7 +23,7 @@ int run(const Arguments& arguments) {
         say_diagnostics(scene.error());
         return kBadInput;
     }
-    std::fputs(scene::to_mathematics(scene->net).c_str(), stdout);
+    std::fputs(scene::to_mathematics(scene->draft).c_str(), stdout);
     return kFine;
 }
 

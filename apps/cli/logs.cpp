@@ -68,7 +68,7 @@ Result<CsvLog, Diagnostics> CsvLog::open(const std::string& path, const net::Net
 }
 
 void CsvLog::fired(SimTime at, net::TransitionIndex transition) {
-    buffer_ += std::to_string(at.ticks) + "," + seconds(at) + "," + field(net_->transition(transition).path) + "\n";
+    buffer_ += std::to_string(at.ticks) + "," + seconds(at) + "," + field(std::string(net_->transition(transition).path)) + "\n";
     if (buffer_.size() > (1u << 20)) {
         flush();
     }

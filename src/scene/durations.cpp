@@ -9,20 +9,20 @@ namespace {
 
 struct DistributionSignature {
     const char* name;
-    net::DistributionKind kind;
+    DistributionKind kind;
     const char* parameters[4];  // null: no more
     int required;
 };
 
 constexpr DistributionSignature kDistributions[] = {
-    {"uniform", net::DistributionKind::kUniform, {"low", "high"}, 2},
-    {"normal", net::DistributionKind::kNormal, {"mean", "deviation", "low", "high"}, 2},
-    {"exponential", net::DistributionKind::kExponential, {"mean"}, 1},
-    {"triangular", net::DistributionKind::kTriangular, {"low", "mode", "high"}, 3},
-    {"erlang", net::DistributionKind::kErlang, {"shape", "mean"}, 2},
-    {"gamma", net::DistributionKind::kGamma, {"shape", "mean"}, 2},
-    {"empirical", net::DistributionKind::kEmpirical, {}, 0},
-    {"discrete", net::DistributionKind::kDiscrete, {}, 0},
+    {"uniform", DistributionKind::kUniform, {"low", "high"}, 2},
+    {"normal", DistributionKind::kNormal, {"mean", "deviation", "low", "high"}, 2},
+    {"exponential", DistributionKind::kExponential, {"mean"}, 1},
+    {"triangular", DistributionKind::kTriangular, {"low", "mode", "high"}, 3},
+    {"erlang", DistributionKind::kErlang, {"shape", "mean"}, 2},
+    {"gamma", DistributionKind::kGamma, {"shape", "mean"}, 2},
+    {"empirical", DistributionKind::kEmpirical, {}, 0},
+    {"discrete", DistributionKind::kDiscrete, {}, 0},
 };
 
 const DistributionSignature* find_distribution(const lang::Expr& e) {
@@ -92,7 +92,7 @@ net::DurationDraft Elaboration::distribution_of(const lang::Expr& e, const Scope
     out.kind = net::DurationKind::kDistribution;
     out.distribution = d.kind;
     out.where = at(e.span);
-    if (d.kind == net::DistributionKind::kEmpirical || d.kind == net::DistributionKind::kDiscrete) {
+    if (d.kind == DistributionKind::kEmpirical || d.kind == DistributionKind::kDiscrete) {
         return sample_distribution(e, scope, std::move(out));
     }
     std::vector<const lang::Expr*> given(4, nullptr);
@@ -141,7 +141,7 @@ net::DurationDraft Elaboration::distribution_of(const lang::Expr& e, const Scope
         }
         const bool shape = std::string_view(d.parameters[i]) == "shape";
         const ValueType type = !shape                                             ? kTime
-                               : d.kind == net::DistributionKind::kErlang ? ValueType{ValueKind::kInt}
+                               : d.kind == DistributionKind::kErlang ? ValueType{ValueKind::kInt}
                                                                           : ValueType{ValueKind::kReal};
         auto value = expr_of(*given[static_cast<std::size_t>(i)], scope, type);
         if (!value) {
@@ -171,7 +171,7 @@ net::DurationDraft Elaboration::sample_distribution(const lang::Expr& e, const S
             into.push_back(std::move(*x));
         }
     };
-    const bool discrete = out.distribution == net::DistributionKind::kDiscrete;
+    const bool discrete = out.distribution == DistributionKind::kDiscrete;
     for (std::size_t i = 0; i < e.args.size(); ++i) {
         const lang::Expr& a = e.args[i].value;
         if (a.kind == lang::ExprKind::kList) {

@@ -178,7 +178,7 @@ EventList parse_event_list(std::string_view text, const std::string& filename, s
 std::vector<std::string> event_names(const net::Net& net) {
     std::vector<std::string> names;
     for (std::uint32_t i = 0; i < net.event_count(); ++i) {
-        names.push_back(net.event({i}).path);
+        names.emplace_back(net.event({i}).path);
     }
     return names;
 }

@@ -40,7 +40,8 @@ class Loader {
     std::uint32_t open(const std::string& path, const std::string& text) {
         const auto number = static_cast<std::uint32_t>(library_.files.size());
         lang::Parsed parsed = lang::parse(text, path, number);
-        library_.readable = library_.readable && !has_errors(parsed.diagnostics);
+        broken_.push_back(has_errors(parsed.diagnostics));
+        library_.readable = library_.readable && !broken_.back();
         for (Diagnostic& d : parsed.diagnostics) {
             library_.diagnostics.push_back(std::move(d));
         }
@@ -127,6 +128,10 @@ class Loader {
                         found = text == name.text ? &d : found;
                     }
                 }
+                if (found == nullptr && broken_[from]) {  // its own errors say enough
+                    declare(library_.visible[file], name, {});
+                    continue;
+                }
                 if (found == nullptr) {
                     library_.diagnostics.push_back(unknown_name(library_.where(name.span), "net", name.text, known,
                                                                 "import from " + imports[i].path));
@@ -142,6 +147,7 @@ class Loader {
     FileSource& source_;
     Library library_;
     std::map<std::string, std::uint32_t> numbers_;
+    std::vector<bool> broken_;  // by file: it has errors of its own
     std::vector<std::vector<std::uint32_t>> imported_;  // by file and import: the file's number
 };
 

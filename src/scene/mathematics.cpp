@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "puppetri/scene/mathematics.h"
 
+#include <algorithm>
+#include <functional>
 #include <map>
 #include <vector>
+
+#include "puppetri/net/net.h"
 
 namespace puppetri::scene {
 namespace {
@@ -58,8 +62,9 @@ Arcs arcs_of(const net::NetDraft& draft) {
 
 }  // namespace
 
-std::string to_mathematics(const net::Net& net) {
-    const net::NetDraft& draft = net.lowered();
+std::string to_mathematics(const net::NetDraft& written) {
+    const auto lowered = net::lower(written);
+    const net::NetDraft& draft = lowered ? *lowered : written;
     const Arcs arcs = arcs_of(draft);
     std::vector<std::string> places, transitions, flow;
     std::map<std::int64_t, std::vector<std::string>, std::greater<>> weights;  // heavy ones first

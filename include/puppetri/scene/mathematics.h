@@ -3,11 +3,11 @@
 #pragma once
 #include <string>
 
-#include "puppetri/net/net.h"
+#include "puppetri/net/draft.h"
 
 namespace puppetri::scene {
 
-// The net as text, lines with newlines:
+// A draft that compiles, as text, lines with newlines:
 //     P = {P1, P2, P3, P4}
 //     T = {t1, t2}
 //     F = {(P1, t1), (P2, t2), (P3, t2), (t1, P4), (t2, P4)}
@@ -15,6 +15,7 @@ namespace puppetri::scene {
 //     M0 = [1 1 1 0]^T
 // and, rows P and columns T, the incidence matrix C = post - pre. Arcs beyond the plain kind follow by name:
 // tests, inhibitors, resets.
-std::string to_mathematics(const net::Net& net);
+// Holding times and refinements have been lowered, fused places are one.
+std::string to_mathematics(const net::NetDraft& draft);
 
 }  // namespace puppetri::scene

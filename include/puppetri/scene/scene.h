@@ -58,7 +58,7 @@ struct Scene {
     std::vector<Camera> cameras;
     Diagnostics notes;  // warnings and notes: no errors
 
-    const std::vector<net::Rule>& rules() const { return net.lowered().rules; }
+    const std::vector<net::Rule>& rules() const { return net.declarations().rules; }
 };
 
 // Reads a scene and all that it imports.
