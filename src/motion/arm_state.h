@@ -2,6 +2,7 @@
 // Joining arms: the state that a movement of the arms starts from, always in chest space, and the
 // offsets that fade.
 #pragma once
+#include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/context.h"
 #include "puppetri/motion/gaze.h"
@@ -53,17 +54,26 @@ struct ArmOffsets {
     }
 };
 
+// The rate of the rotation vector r whose rotation turns with the angular velocity w: the inverse of the left Jacobian
+// of the exponential map (Bullo and Murray 1995), r' = w - r x w / 2 + k r x (r x w).
+inline Vec3 rotation_vector_rate(Vec3 r, Vec3 w) {
+    const double angle = length(r), half = angle / 2;
+    const double k = angle < 1e-4 ? 1.0 / 12 : 1 / (angle * angle) - cos(half) / (sin(half) * 2 * angle);
+    return w - cross(r, w) * 0.5 + cross(r, cross(r, w)) * k;
+}
+
 // The offset of a held ball: both hands and the ball move as one.
 struct BallOffset {
     InertialOffset3 position, rotation;
 
     BallOffset() = default;
-    // `now` in chest space; own and own_rate: what the movement wants at its start.
-    BallOffset(const Transform& now, Vec3 velocity, Vec3 angular, const Transform& own,
-               Vec3 own_velocity, Vec3 own_angular, double blend_s)
-        : position(now.translation - own.translation, velocity - own_velocity, blend_s),
-          rotation(to_rotation_vector(now.rotation * conjugate(own.rotation)),
-                   angular - own_angular, blend_s) {}
+    // `now` in chest space; own: what the movement wants at its start, not turning there.
+    BallOffset(const Transform& now, Vec3 velocity, Vec3 angular, const Transform& own, Vec3 own_velocity,
+               double blend_s)
+        : position(now.translation - own.translation, velocity - own_velocity, blend_s) {
+        const Vec3 r = to_rotation_vector(now.rotation * conjugate(own.rotation));
+        rotation = InertialOffset3(r, rotation_vector_rate(r, angular), blend_s);
+    }
 
     Transform apply(double t_s, const Transform& own) const {
         return {normalized(from_rotation_vector(rotation.at(t_s)) * own.rotation),

@@ -19,7 +19,7 @@ constexpr double kMoment_s = 1e-4;
 // Distances from the shoulders to the wrists, in parts of the height: arms nearly straight, with
 // room to swing on.
 constexpr double kLowReach = 0.300, kReleaseReach = 0.320;
-constexpr double kBentBack_rad = 0.25;  // of the wrists at the release
+constexpr double kBentBack_rad = 0.0;  // of the wrists at the release
 // How far the arms swing, from before the thighs to the release.
 constexpr double kSwing_rad = 0.75;
 
@@ -182,8 +182,9 @@ class Throw final : public Movement {
         pitch_ =
             Curve1({{0, {start, 0, 0}}, {low_s, {low_pitch, 0, 0}}, {release_s_, {end, 0, 0}}});
         const Quat now = chest.rotation * ball.chest_from_ball.rotation;
-        turn_ = InertialOffset3(to_rotation_vector(now * conjugate(aim_ * about_x(start))),
-                                spin + rotate(chest.rotation, ball.angular_chest), 0.9 * low_s);
+        const Vec3 offset = to_rotation_vector(now * conjugate(aim_ * about_x(start)));
+        turn_ = InertialOffset3(
+            offset, rotation_vector_rate(offset, spin + rotate(chest.rotation, ball.angular_chest)), 0.9 * low_s);
         Controls on_ball = context.now;
         lay_hands(figure_, ball.chest_from_ball, radius_m_, 0, on_ball);
         fingers_ = fading_fingers(context, on_ball, 0.9 * low_s);

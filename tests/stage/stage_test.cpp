@@ -181,7 +181,7 @@ TEST_CASE(
 
 TEST_CASE("long and fast throws get a warning, at 6 m and 9 m/s [unit]") {
     stage::Cast cast = two_players();
-    cast.actors[1].position_world = {7, 0, 0};
+    cast.actors[1].position_world = {5.4, 0, 0};
     Hand hand(cast);
     const auto flies = hand.add(
         "flight", C::with(C::with(C::prop("fly", 0), "from", ActorIndex{0}), "to", ActorIndex{1}));
