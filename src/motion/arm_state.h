@@ -54,32 +54,15 @@ struct ArmOffsets {
     }
 };
 
-// The rate of the rotation vector r whose rotation turns with the angular velocity w: the inverse of the left Jacobian
-// of the exponential map (Bullo and Murray 1995), r' = w - r x w / 2 + k r x (r x w).
+// The rate of the rotation vector r whose rotation turns with the angular velocity w: the inverse
+// of the left Jacobian of the exponential map (Bullo and Murray 1995), r' = w - r x w / 2 + k r x
+// (r x w).
 inline Vec3 rotation_vector_rate(Vec3 r, Vec3 w) {
     const double angle = length(r), half = angle / 2;
-    const double k = angle < 1e-4 ? 1.0 / 12 : 1 / (angle * angle) - cos(half) / (sin(half) * 2 * angle);
+    const double k =
+        angle < 1e-4 ? 1.0 / 12 : 1 / (angle * angle) - cos(half) / (sin(half) * 2 * angle);
     return w - cross(r, w) * 0.5 + cross(r, cross(r, w)) * k;
 }
-
-// The offset of a held ball: both hands and the ball move as one.
-struct BallOffset {
-    InertialOffset3 position, rotation;
-
-    BallOffset() = default;
-    // `now` in chest space; own: what the movement wants at its start, not turning there.
-    BallOffset(const Transform& now, Vec3 velocity, Vec3 angular, const Transform& own, Vec3 own_velocity,
-               double blend_s)
-        : position(now.translation - own.translation, velocity - own_velocity, blend_s) {
-        const Vec3 r = to_rotation_vector(now.rotation * conjugate(own.rotation));
-        rotation = InertialOffset3(r, rotation_vector_rate(r, angular), blend_s);
-    }
-
-    Transform apply(double t_s, const Transform& own) const {
-        return {normalized(from_rotation_vector(rotation.at(t_s)) * own.rotation),
-                own.translation + position.at(t_s)};
-    }
-};
 
 // The part of the offsets that is not the hands' place (fingers, elbows), for hands whose place is
 // a held ball's business. `own`: the arms as the movement has them at its start.

@@ -10,9 +10,7 @@ namespace puppetri::motion {
 namespace {
 
 constexpr double kBlend_s = 0.5;
-// A ball that is faster than this (a throw that was cut) swings on about the shoulders before it is carried.
-constexpr double kFastBall_m_s = 1.5;
-constexpr double kSwing_s = 0.7;
+constexpr double kSwing_s = 0.7;  // until a ball is where it is carried
 
 // A slow sway that is the same function of absolute time in every movement, so that nothing shows
 // where they join.
@@ -23,7 +21,7 @@ Vec3 sway(double at_s) {
 class Carry final : public Movement {
  public:
     Carry(const MotionContext& given, const CarrySpec& spec)
-        : figure_(given.figure), radius_m_(spec.radius_m) {
+        : figure_(given.figure), radius_m_(spec.radius_m), held_(spec.held) {
         const MotionContext context = arms_in_chest_space(given);
         limbs = kBothArms;
         duration = duration_of(context, spec.duration_s);
@@ -37,13 +35,7 @@ class Carry final : public Movement {
             }
             const double h = 1e-4;
             const Vec3 own_velocity = (sway(at_s_ + h) - sway(at_s_)) * (1 / h);
-            swings_ = length(ball.velocity_chest) > kFastBall_m_s;
-            if (swings_) {
-                plan_swing(ball, own_velocity);
-            } else {
-                offset_ = BallOffset(ball.chest_from_ball, ball.velocity_chest, ball.angular_chest, own(0),
-                                     own_velocity, kBlend_s);
-            }
+            plan_swing(ball, own_velocity);
             Controls on_ball = context.now;
             lay_hands(figure_, ball.chest_from_ball, radius_m_, 0, on_ball);
             offsets_ = fading_fingers(context, on_ball, kBlend_s);
@@ -60,45 +52,52 @@ class Carry final : public Movement {
         offsets_.apply(t_s, out);
     }
 
-   private:
-    Transform own(double t_s) const { return {rest_.rotation, rest_.translation + sway(at_s_ + t_s)}; }
+ private:
+    Transform own(double t_s) const {
+        return {rest_.rotation, rest_.translation + sway(at_s_ + t_s)};
+    }
 
     Transform chest_from_ball(double t_s) const {
-        if (!swings_) {
-            return offset_.apply(t_s, own(t_s));
+        if (!held_) {
+            return own(t_s);
         }
         Transform ball = swing_.at(t_s);
-        ball.translation = ball.translation - rotate(ball.rotation, wrists_ball_) + sway(at_s_ + t_s) -
-                           sway(at_s_) + sway_offset_.at(t_s);
+        ball.translation = ball.translation - rotate(ball.rotation, wrists_ball_) +
+                           sway(at_s_ + t_s) - sway(at_s_) + sway_offset_.at(t_s);
         return ball;
     }
 
     // The middle of the wrists swings about the middle of the shoulders; the ball goes with it.
     void plan_swing(const HeldBall& ball, Vec3 own_velocity) {
         for (const Side side : {Side::kLeft, Side::kRight}) {
-            wrists_ball_ = wrists_ball_ + ball_from_hand(figure_, side, radius_m_).translation * 0.5;
+            wrists_ball_ =
+                wrists_ball_ + ball_from_hand(figure_, side, radius_m_).translation * 0.5;
         }
-        const auto wrists = [&](const Transform& t) { return Transform{t.rotation, t * wrists_ball_}; };
-        const Vec3 left = shoulder_chest(figure_, Side::kLeft), right = shoulder_chest(figure_, Side::kRight);
+        const auto wrists = [&](const Transform& t) {
+            return Transform{t.rotation, t * wrists_ball_};
+        };
+        const Vec3 left = shoulder_chest(figure_, Side::kLeft),
+                   right = shoulder_chest(figure_, Side::kRight);
         const figure::Arm& arm = figure_.arms[0];
         Transform rest = rest_;
         rest.translation = rest.translation + sway(at_s_);
-        swing_ = SwingingArm({.shoulder = (left + right) * 0.5,
-                              .now = wrists(ball.chest_from_ball),
-                              .velocity = ball.velocity_chest +
-                                          cross(ball.angular_chest, rotate(ball.chest_from_ball.rotation, wrists_ball_)),
-                              .angular = ball.angular_chest,
-                              .target = wrists(rest),
-                              .longest_m = 0.98 * (arm.upper_m + arm.fore_m),
-                              .duration_s = kSwing_s});
+        swing_ =
+            SwingingArm({.shoulder = (left + right) * 0.5,
+                         .now = wrists(ball.chest_from_ball),
+                         .velocity = ball.velocity_chest +
+                                     cross(ball.angular_chest,
+                                           rotate(ball.chest_from_ball.rotation, wrists_ball_)),
+                         .angular = ball.angular_chest,
+                         .target = wrists(rest),
+                         .longest_m = 0.98 * (arm.upper_m + arm.fore_m),
+                         .duration_s = kSwing_s});
         sway_offset_ = InertialOffset3({}, -own_velocity, kBlend_s);
     }
 
     const figure::Figure& figure_;
     double radius_m_, at_s_ = 0;
+    bool held_;
     Transform rest_;
-    BallOffset offset_;
-    bool swings_ = false;
     SwingingArm swing_;
     Vec3 wrists_ball_;
     InertialOffset3 sway_offset_;

@@ -30,7 +30,8 @@ class FadingArm {
 };
 
 // From the state of the context to rest at `target`.
-SwingingArm swing_to(const MotionContext& context, Side side, const Transform& target, double duration_s) {
+SwingingArm swing_to(const MotionContext& context, Side side, const Transform& target,
+                     double duration_s) {
     const int i = index_of(side);
     const figure::Arm& arm = context.figure.arms[i];
     return SwingingArm({.shoulder = shoulder_chest(context.figure, side),

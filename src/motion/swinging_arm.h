@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A hand, or two hands with a ball, that swings about the shoulder to where it shall be. It moves on a cylinder about
-// the shoulder's lateral axis: an angle in the plane of the swing, a distance from the shoulder, a distance to the side.
-// A fast hand so swings on along its arc, as after a throw, instead of running into the end of the arm.
+// A hand, or two hands with a ball, that swings about the shoulder to where it shall be. It moves
+// on a cylinder about the shoulder's lateral axis: an angle in the plane of the swing, a distance
+// from the shoulder, a distance to the side. A fast hand so swings on along its arc, as after a
+// throw, instead of running into the end of the arm.
 #pragma once
 #include "puppetri/math/quintic.h"
 #include "puppetri/motion/inertialize.h"
@@ -25,12 +26,12 @@ struct SwingSpec {
 };
 
 class SwingingArm {
-   public:
+ public:
     SwingingArm() = default;
     explicit SwingingArm(const SwingSpec& spec);
     Transform at(double t_s) const;
 
-   private:
+ private:
     Vec3 shoulder_;
     Curve1 angle_, reach_, side_;
     Quat target_from_arm_;

@@ -27,6 +27,7 @@ class Throw final : public Movement {
  public:
     Throw(const MotionContext& given, const ThrowSpec& spec)
         : figure_(given.figure),
+          held_(spec.held),
           radius_m_(spec.radius_m),
           target_(spec.target_world),
           flight_s_(spec.flight_s) {
@@ -71,7 +72,12 @@ class Throw final : public Movement {
 
     void plan_body(const MotionContext& context) {
         Controls now = context.now;
-        const Vec3 way = target_ - now.pelvis.position_world;
+        // A target behind the back cannot be thrown at: the throw then goes as far aside as it can.
+        const double aside = aside_rad(now, target_),
+                     turn = aside - clamp(aside, -kMostAside_rad, kMostAside_rad);
+        const Vec3 centre = now.pelvis.position_world;
+        target_ = centre + rotate(about_y(turn), target_ - centre);
+        const Vec3 way = target_ - centre;
         const Vec3 facing = rotate(now.pelvis.rotation_world, {0, 0, 1});
         accent_.ahead_world =
             normalized(Vec3{way.x, 0, way.z}, normalized(Vec3{facing.x, 0, facing.z}, {0, 0, 1}));
@@ -184,10 +190,21 @@ class Throw final : public Movement {
         const Quat now = chest.rotation * ball.chest_from_ball.rotation;
         const Vec3 offset = to_rotation_vector(now * conjugate(aim_ * about_x(start)));
         turn_ = InertialOffset3(
-            offset, rotation_vector_rate(offset, spin + rotate(chest.rotation, ball.angular_chest)), 0.9 * low_s);
+            offset, rotation_vector_rate(offset, spin + rotate(chest.rotation, ball.angular_chest)),
+            0.9 * low_s);
+        if (!held_) {
+            offsets_ = ArmOffsets::make(
+                context,
+                [this](double t, Controls& out) {
+                    body(t, out);
+                    hands(t, out);
+                },
+                0.9 * low_s);
+            return;
+        }
         Controls on_ball = context.now;
         lay_hands(figure_, ball.chest_from_ball, radius_m_, 0, on_ball);
-        fingers_ = fading_fingers(context, on_ball, 0.9 * low_s);
+        offsets_ = fading_fingers(context, on_ball, 0.9 * low_s);
     }
     double easy_pitch_at(const Controls& controls, Vec3 ball_world) const {
         const Transform chest = world_from_chest(figure_, controls);
@@ -208,7 +225,7 @@ class Throw final : public Movement {
                                         wrists_world(t_s, out) - rotate(rotation, wrists_ball_)};
         lay_hands(figure_, inverse(world_from_chest(figure_, out)) * world_from_ball, radius_m_, 0,
                   out);
-        fingers_.apply(t_s, out);
+        offsets_.apply(t_s, out);
     }
 
     // After the release, should nobody else want the arms.
@@ -227,6 +244,7 @@ class Throw final : public Movement {
     }
 
     const figure::Figure& figure_;
+    bool held_;
     double radius_m_, release_s_ = 0, low_s_ = 0;
     Vec3 target_;
     double flight_s_;
@@ -236,10 +254,15 @@ class Throw final : public Movement {
     Quat aim_;
     Curve1 theta_, rho_, side_, pitch_;
     InertialOffset3 turn_;
-    ArmOffsets fingers_;
+    ArmOffsets offsets_;
 };
 
 }  // namespace
+
+double aside_rad(const Controls& controls, Vec3 target_world) {
+    return turn_between(heading_of(target_world - controls.pelvis.position_world),
+                        heading_of(controls.pelvis.rotation_world));
+}
 
 MovementPtr make_throw(const MotionContext& context, const ThrowSpec& spec) {
     return std::make_shared<Throw>(context, spec);

@@ -18,12 +18,17 @@ struct ThrowSpec {
     double radius_m = 0.11;
     Vec3 target_world = {};    // the ball's centre at the catch
     double duration_s = 0.85;  // until the release, which ends the movement
+    bool held = true;          // both hands are on the ball; otherwise they throw air
     double flight_s = 0;       // of the flight; 0: sqrt(2 d / g)
 };
-// Needs   both hands on the ball (held_ball).
 // Gives   event "release" at its end. After it the arms swing on and come to hang, the trunk
 // straightens.
 MovementPtr make_throw(const MotionContext& context, const ThrowSpec& spec);
+
+// How far the figure looks past the target, to its left positive; a throw goes at most
+// kMostAside_rad aside.
+double aside_rad(const Controls& controls, Vec3 target_world);
+inline constexpr double kMostAside_rad = 0.5;
 
 struct ReadySpec {
     double radius_m = 0.11;
