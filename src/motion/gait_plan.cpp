@@ -29,6 +29,7 @@ constexpr double kSetDown_m = 1.6;  // the same upward, in m
 // Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
 // off (20), and the shortest of a leg that stands (24.4).
 constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9788;
+constexpr double kSlips = 0.9981;  // from here on a standing foot would leave its print
 
 class Planner {
  public:
@@ -63,7 +64,8 @@ class Planner {
         for (int round = 0; round < 4; ++round) {
             plan_swing_foot();
             plan_height_of_pelvis();
-            const double missing = kSwingKnee - swing_knee();
+            const double wanted = lerp(radians(55), kSwingKnee, clamp((x_ / f_.leg_m - 0.35) / 0.3, 0, 1));
+            const double missing = wanted - swing_knee();
             if (std::fabs(missing) < radians(4)) {
                 break;
             }
@@ -151,7 +153,8 @@ class Planner {
         plan_.lean_rad = first_ ? radians(4) : last_ ? radians(-3) : 0;
     }
 
-    bool rolls() const { return half_ > 0.02 * n_; }
+    // Above a duty factor of 0.5 the foot rolls from heel to toe; at 0.5 it just still does.
+    bool rolls() const { return half_ > -0.005 * n_; }
     // Heel off to toe off; the state at the border is where the next step takes it up.
     static Quintic heel_rise(double lift_pitch, double length_s) {
         return Quintic::between({}, {lift_pitch, 1.9 * lift_pitch / length_s, 0}, length_s);
@@ -187,9 +190,6 @@ class Planner {
     // is as long as the height wants that the front leg, bent by some 20 degrees, has.
     double lift_pitch(Side hind, const Footprint& hind_print, Vec3 front_ankle_path,
                       Vec3 pelvis_path, Quat turn) const {
-        if (std::fabs(half_) < 0.02 * n_) {
-            return 0;
-        }
         const double height =
             hips_height(other(hind), front_ankle_path, pelvis_path, turn, kPushing);
         return pitch_for(hind, hind_print, pelvis_path, turn, kPushing, height, radians(-8),
@@ -280,7 +280,8 @@ class Planner {
         // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
         // that all is smooth.
         const Footprint print = footprint_of(f_, side, swing_);
-        double lift_to = radians(-4);
+        const double early = plan_.lift_s / (0.049 * n_);
+        double lift_to = radians(-4) * early * early;
         if (!first_ && planted) {
             const Vec3 front =
                 path_from_world_ * plan_.feet[index_of(support_side_)].at(lift).ankle_world;
@@ -294,7 +295,8 @@ class Planner {
                 path_from_world_ * plan_.feet[index_of(support_side_)].at(strike).ankle_world;
             const double lowest =
                 hips_height(support_side_, back, pelvis, turn_at(strike), kShortest) + 0.004;
-            strike_to = last_ ? radians(5)
+            const double late = (plan_.duration_s - plan_.strike_s) / (0.049 * n_);
+            strike_to = last_ ? radians(5) * late * late
                               : pitch_for(side, landing, pelvis, turn_at(strike), kLanding, lowest,
                                           radians(18), radians(38));
         }
@@ -369,7 +371,7 @@ class Planner {
     // the pelvis.
     HeightBand band(double t) const {
         const double middle = puppetri::sin(kPi * t / plan_.duration_s);
-        HeightBand b{t, -1e9, 1e9, whole_ ? 0.2 + 0.75 * middle * middle : 0.45};
+        HeightBand b{t, -1e9, 1e9, 1e9, whole_ ? 0.2 + 0.75 * middle * middle : 0.45};
         for (const Side side : {Side::kLeft, Side::kRight}) {
             const bool transfers = side == spec_.transfer;
             const bool stands = transfers
@@ -381,11 +383,11 @@ class Planner {
                 return hips_height(side, ankle, plan_.pelvis_path.at(t).position, turn_at(t),
                                    reach);
             };
-            const bool lands =
-                transfers && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
+            const bool lands = transfers && !last_ && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
             b.highest = std::fmin(b.highest, height(lands ? kLanding : kLongest));
             if (stands) {
                 b.lowest = std::fmax(b.lowest, height(kShortest));
+                b.limit = std::fmin(b.limit, height(kSlips));
             }
         }
         return b;

@@ -138,7 +138,7 @@ Curve1 plan_height(const HeightPlan& plan) {
         }
     }
     const double pinned = plan.end_is_free ? 0 : 1e6;
-    for (int round = 0; round < 12; ++round) {
+    for (int round = 0; round < 14; ++round) {
         std::array<std::array<double, kUnknown>, kUnknown> rows{};
         std::array<double, kUnknown> right{};
         auto add = [&](const std::array<double, kUnknown>& row, double target, double weight) {
@@ -159,6 +159,11 @@ Curve1 plan_height(const HeightPlan& plan) {
             add(value[s], lerp(lo, hi, plan.bands[s].wanted) - value0[s], 0.07);
             if (round > 0 && (now > hi || now < lo)) {
                 add(value[s], (now > hi ? hi : lo) - value0[s], 40);
+            }
+            // In the later rounds a leg that would be too short counts most.
+            const double limit = plan.bands[s].limit - base;
+            if (round > 5 && now > limit - 0.0005) {
+                add(value[s], limit - 0.0005 - value0[s], 3000);
             }
             add(bend[s], -bend0[s], 4e-5 * T * T);
         }

@@ -18,6 +18,7 @@ Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s);
 struct HeightBand {
     double t_s = 0;
     double lowest = 0, highest = 0;
+    double limit = 1e9;   // above it a foot would slip
     double wanted = 0.5;  // where in the band, 0 lowest, 1 highest
 };
 struct HeightPlan {
