@@ -213,7 +213,12 @@ class Planner {
             const double begin = std::fmax(T - (first_ ? 0.6 : 1) * kHeelRise * n_, flat_s + 0.02);
             const double length_s = plan_.support_lift_s - begin;
             if (length_s > 0.03) {
-                const Vec3 front{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m, x_};
+                // The front foot may still be rolling down from its heel when this one leaves.
+                const double rolled = clamp(2 * half_ / (kFlatAfterStrike * n_), 0, 1);
+                const Vec3 flat{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m, x_};
+                const Footprint landing = footprint_at(f_, spec_.transfer, plan_.world_from_path * flat, plan_.heading_rad);
+                const Motion1 front_pitch{radians(22) * (1 - rolled) * (1 - rolled), 0, 0};
+                const Vec3 front = to_path(ankle_on_print(f_, spec_.transfer, landing, front_pitch)).position;
                 const Motion3 end = plan_.pelvis_path.at(T);
                 const Quintic rise = heel_rise(
                     lift_pitch(support_side_, support_print_, front,
@@ -342,7 +347,8 @@ class Planner {
             (first_ ? 1.0 : 1) * kBrake * (to.position.z - from.position.z) / (d * d);
         to.acceleration.y += (first_ ? 0.8 : 1) * kSetDown_m / (d * d);
         if (planted && !first_) {
-            from.acceleration.z += kLeave * (to.position.z - from.position.z) / (d * d);
+            const double hurry = kLeave + 12 * std::fmax(0, x_ / f_.leg_m - 0.75);
+            from.acceleration.z += hurry * (to.position.z - from.position.z) / (d * d);
         }
         const Curve1 toes =
             minimum_jerk({lift, bend}, {{lift + 0.4 * d, radians(6)}}, {strike, {}});
