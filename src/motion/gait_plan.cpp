@@ -373,6 +373,19 @@ class Planner {
         foot.stand(strike, landing);
     }
 
+    // Also a little past the end, where the pelvis goes on as it is.
+    Vec3 pelvis_at(double t) const {
+        const double T = plan_.duration_s;
+        const Motion3 end = plan_.pelvis_path.at(std::fmin(t, T));
+        if (t <= T) {
+            return end.position;
+        }
+        // It slows down from its speed at the border towards the mean.
+        Vec3 p = end.position + end.velocity * (t - T);
+        p.z -= 0.35 * (end.velocity.z - x_ / n_) * (t - T);
+        return p;
+    }
+
     // The band at t: standing legs between their shortest and longest reach, whatever the height of
     // the pelvis.
     HeightBand band(double t) const {
@@ -386,8 +399,7 @@ class Planner {
             const LegControl leg = plan_.feet[index_of(side)].at(t);
             const Vec3 ankle = path_from_world_ * leg.ankle_world;
             auto height = [&](double reach) {
-                return hips_height(side, ankle, plan_.pelvis_path.at(t).position, turn_at(t),
-                                   reach);
+                return hips_height(side, ankle, pelvis_at(t), turn_at(t), reach);
             };
             const bool lands = transfers && !last_ && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
             b.highest = std::fmin(b.highest, height(lands ? kLanding : kLongest));
@@ -439,6 +451,12 @@ class Planner {
         constexpr int kBands = 20;
         for (int i = 1; i <= kBands; ++i) {
             height.bands.push_back(band(T * i / kBands));
+        }
+        // The double support goes on in the next step: what this one leaves has to suit both legs until the hind foot is off.
+        for (int i = 1; i <= 3 && !last_ && half_ > 0; ++i) {
+            height.bands.push_back(band(T + half_ * i / 3));
+            height.bands.back().lowest = -1e9;
+            height.bands.back().highest = height.bands.back().limit;
         }
         plan_.pelvis_path.y = plan_height(height);
     }

@@ -26,7 +26,7 @@ struct HeightPlan {
     double duration_s = 0;
     bool end_is_free = false;  // otherwise `to` is met
     Motion1 to;                // velocity and acceleration at the end count in any case
-    std::vector<HeightBand> bands;
+    std::vector<HeightBand> bands;  // may reach past the end: the curve goes on there as it is
 };
 // A smooth curve through the bands, as far as there is one: otherwise the sum of squares by which
 // it leaves them is least, leaving upwards (a leg too short) counting much more than downwards.
