@@ -72,7 +72,8 @@ class Step final : public Movement {
         }
         if (t_s > T && spec_.kind == StepKind::kLastHalf) {
             const double settled = smooth_rise(t_s - T, 0.8);
-            c.pelvis.position_world = lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
+            c.pelvis.position_world =
+                lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
             living_.add(t_s - T, smooth_rise(t_s - T, 1.5), c);
         }
         copy_limbs(limbs, c, out);

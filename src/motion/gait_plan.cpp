@@ -19,9 +19,10 @@ constexpr double kSwingKnee = radians(60);
 constexpr double kFlatAfterStrike = 0.17,
                  kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
 constexpr double kList = radians(2.5);
-constexpr double kSway_m = 0.0205;      // to either side, at any height
+constexpr double kSway_m = 0.0205;       // to either side, at any height
 constexpr double kBoundaryLead = 0.065;  // of the stroke
-constexpr double kRestLag = 0.01;       // of the stroke: what the living rest after the last step makes good
+constexpr double kRestLag =
+    0.01;  // of the stroke: what the living rest after the last step makes good
 constexpr double kClearance_m = 0.022;
 constexpr double kBrake = 6.0;      // at touch down, in units of way / time^2
 constexpr double kLeave = 3.0;      // after toe off, in the same units
@@ -64,7 +65,8 @@ class Planner {
         for (int round = 0; round < 4; ++round) {
             plan_swing_foot();
             plan_height_of_pelvis();
-            const double wanted = lerp(radians(55), kSwingKnee, clamp((x_ / f_.leg_m - 0.35) / 0.3, 0, 1));
+            const double wanted =
+                lerp(radians(55), kSwingKnee, clamp((x_ / f_.leg_m - 0.35) / 0.3, 0, 1));
             const double missing = wanted - swing_knee();
             if (std::fabs(missing) < radians(4)) {
                 break;
@@ -143,7 +145,10 @@ class Planner {
         plan_.pelvis_yaw = minimum_jerk({0, before}, {}, {T, after});
         const double rate = side_ * kList * kPi / n_;
         plan_.pelvis_list = minimum_jerk({0, {0, first_ ? 0 : rate, 0}},
-                                         {{(first_ ? 0.6 : 0.5) * T, side_ * kList * (whole_ ? 1 : first_ ? 1.5 : 0.8)}},
+                                         {{(first_ ? 0.6 : 0.5) * T, side_ * kList *
+                                                                         (whole_   ? 1
+                                                                          : first_ ? 1.5
+                                                                                   : 0.8)}},
                                          {T, {0, last_ ? 0 : -rate, 0}});
         const double swing =
             clamp(radians(36) * x_ / (0.41 * f_.height_m), radians(5), radians(30)) * 0.75;
@@ -216,9 +221,11 @@ class Planner {
                 // The front foot may still be rolling down from its heel when this one leaves.
                 const double rolled = clamp(2 * half_ / (kFlatAfterStrike * n_), 0, 1);
                 const Vec3 flat{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m, x_};
-                const Footprint landing = footprint_at(f_, spec_.transfer, plan_.world_from_path * flat, plan_.heading_rad);
+                const Footprint landing = footprint_at(
+                    f_, spec_.transfer, plan_.world_from_path * flat, plan_.heading_rad);
                 const Motion1 front_pitch{radians(22) * (1 - rolled) * (1 - rolled), 0, 0};
-                const Vec3 front = to_path(ankle_on_print(f_, spec_.transfer, landing, front_pitch)).position;
+                const Vec3 front =
+                    to_path(ankle_on_print(f_, spec_.transfer, landing, front_pitch)).position;
                 const Motion3 end = plan_.pelvis_path.at(T);
                 const Quintic rise = heel_rise(
                     lift_pitch(support_side_, support_print_, front,
@@ -401,7 +408,8 @@ class Planner {
             auto height = [&](double reach) {
                 return hips_height(side, ankle, pelvis_at(t), turn_at(t), reach);
             };
-            const bool lands = transfers && !last_ && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
+            const bool lands = transfers && !last_ && t > plan_.strike_s - 0.1 * n_ &&
+                               t < plan_.strike_s + 0.03 * n_;
             b.highest = std::fmin(b.highest, height(lands ? kLanding : kLongest));
             if (stands) {
                 b.lowest = std::fmax(b.lowest, height(kShortest));
@@ -452,7 +460,13 @@ class Planner {
         for (int i = 1; i <= kBands; ++i) {
             height.bands.push_back(band(T * i / kBands));
         }
-        // The double support goes on in the next step: what this one leaves has to suit both legs until the hind foot is off.
+        for (const double t : {plan_.lift_s, plan_.strike_s}) {
+            if (t > 0 && t < T) {
+                height.bands.push_back(band(t));
+            }
+        }
+        // The double support goes on in the next step: what this one leaves has to suit both legs
+        // until the hind foot is off.
         for (int i = 1; i <= 3 && !last_ && half_ > 0; ++i) {
             height.bands.push_back(band(T + half_ * i / 3));
             height.bands.back().lowest = -1e9;

@@ -129,7 +129,8 @@ Curve1 plan_height(const HeightPlan& plan) {
     auto at = [T](const Curve1& c, double t) {
         const Motion1 m = c.at(std::fmin(t, T));
         const double late = std::fmax(t - T, 0);
-        return Motion1{m.position + late * (m.velocity + late * m.acceleration / 2), 0, m.acceleration};
+        return Motion1{m.position + late * (m.velocity + late * m.acceleration / 2), 0,
+                       m.acceleration};
     };
     std::vector<std::array<double, kUnknown>> value(samples), bend(samples);
     std::vector<double> value0(samples), bend0(samples);

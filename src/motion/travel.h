@@ -24,8 +24,8 @@ struct HeightBand {
 struct HeightPlan {
     Motion1 from;  // at 0
     double duration_s = 0;
-    bool end_is_free = false;  // otherwise `to` is met
-    Motion1 to;                // velocity and acceleration at the end count in any case
+    bool end_is_free = false;       // otherwise `to` is met
+    Motion1 to;                     // velocity and acceleration at the end count in any case
     std::vector<HeightBand> bands;  // may reach past the end: the curve goes on there as it is
 };
 // A smooth curve through the bands, as far as there is one: otherwise the sum of squares by which
