@@ -275,8 +275,8 @@ int run(const Arguments& arguments) {
         if (!status) {
             say_diagnostics(status.error());
             const std::string& code = status.error().front().code;
-            const bool disk = code == "cannot-write" || code == "disk-full";
-            return disk ? kFailed : kBadInput;
+            return code == "bad-range" || code == "bad-rate" || code == "no-period" ? kBadInput
+                                                                                    : kFailed;
         }
     }
     tell(written, scene, staged->performed, arguments.given("--json"));

@@ -72,8 +72,7 @@ class Step final : public Movement {
         }
         if (t_s > T && spec_.kind == StepKind::kLastHalf) {
             const double settled = smooth_rise(t_s - T, 0.8);
-            c.pelvis.position_world =
-                lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
+            c.pelvis.position_world = lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
             living_.add(t_s - T, smooth_rise(t_s - T, 1.5), c);
         }
         copy_limbs(limbs, c, out);
@@ -108,7 +107,7 @@ class Step final : public Movement {
         const figure::Arm& body = figure_.arms[index_of(side)];
         const Vec3 shoulder = body.clavicle_chest + body.shoulder_clavicle;
         const double ahead = angle + radians(1.5);
-        const double bent = 0.12 * (angle + radians(20)) * (angle + radians(20));
+        const double bent = 0.25 * (angle + radians(20)) * (angle + radians(20));
         const Vec3 reach = (arm.chest_from_hand.translation - shoulder) * (1 - bent);
         arm.chest_from_hand.translation = shoulder + rotate(about_x(-ahead), reach);
         arm.chest_from_hand.rotation =

@@ -203,7 +203,7 @@ class Turn final : public Movement {
         constexpr int kBands = 16;
         for (int i = 1; i <= kBands; ++i) {
             const double t = T_ * i / kBands;
-            HeightBand band{t, 0, 1e9, 1e9, 0.5};
+            HeightBand band{t, 0, 1e9, 0.5};
             for (int side = 0; side < 2; ++side) {
                 const LegControl leg = feet_[side].at(t);
                 const Vec3 hip =

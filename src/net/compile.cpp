@@ -98,7 +98,8 @@ class Compiler {
             const PlaceDraft& place = net_.places[p];
             const DurationDraft d = effective_duration(place);
             zero[p] = d.kind == DurationKind::kConstant && d.a.literal_value() == 0;
-            out_.paced = out_.paced && (zero[p] || d.kind == DurationKind::kOpen);
+            out_.paced = out_.paced && (zero[p] || d.kind == DurationKind::kOpen ||
+                                        d.kind == DurationKind::kAs);
             if (!zero[p]) {
                 raise(p, PlaceKind::kTimed);
             }
@@ -388,7 +389,7 @@ class Compiler {
             case ArcKind::kTakeAll:
                 break;
             case ArcKind::kTakeAllNow:
-                demand.now_all = true;
+                demand.now_all = demand.now_all || !patterned;
                 break;
             case ArcKind::kRead:
                 demand.read += weight;
@@ -505,7 +506,11 @@ class Compiler {
             }
             const auto& capacity = net_.places[p].capacity;
             const std::int64_t gain = d.give - d.take - d.now;
-            if (capacity && gain > 0 && !d.now_all) {
+            if (capacity && d.now_all) {
+                if (d.give > std::int64_t{*capacity}) {
+                    need(false, 0, true);  // too much even for the emptied place
+                }
+            } else if (capacity && gain > 0) {
                 need(false, std::int64_t{*capacity} - gain + 1, true);
             }
         }

@@ -92,6 +92,12 @@ class Reader {
         const std::uint64_t x = count();
         return static_cast<std::int64_t>((x >> 1) ^ (0 - (x & 1)));
     }
+    // A time, written as its distance from `now`.
+    std::int64_t time_from(std::int64_t now) {
+        std::int64_t at = 0;
+        fine_ = !__builtin_add_overflow(now, number(), &at) && fine_;
+        return at;
+    }
     std::uint64_t word() {
         std::uint64_t x = 0;
         for (int i = 0; i < 8; ++i) {
@@ -148,6 +154,11 @@ std::vector<Occurrence> sorted_occurrences(const State& s) {
 }
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr std::size_t kChecksumBytes = 8;
+
+std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
+    return Hash64().add_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).value();
+}
 
 }  // namespace
 
@@ -319,6 +330,7 @@ std::vector<std::uint8_t> write_state(const Net& net, const State& s) {
     w.sparse(s.duration_draws);
     w.sparse(s.delay_draws);
     w.sparse(s.token_draws);
+    w.word(checksum(out));
     return out;
 }
 
@@ -334,7 +346,14 @@ Checked<State> read_state(const Net& net, std::span<const std::uint8_t> bytes) {
                         "use a snapshot of this very net and version"});
         return Unexpected(std::move(list));
     };
-    Reader r(bytes);
+    if (bytes.size() < kChecksumBytes) {
+        return bad("these bytes are no snapshot");
+    }
+    const auto content = bytes.first(bytes.size() - kChecksumBytes);
+    Reader r(content);
+    if (Reader(bytes.last(kChecksumBytes)).word() != checksum(content)) {
+        return bad("the bytes are damaged");
+    }
     if (r.byte() != kVersion || r.word() != net.hash()) {
         return bad("these bytes are no snapshot of this net");
     }
@@ -384,8 +403,8 @@ Checked<State> read_state(const Net& net, std::span<const std::uint8_t> bytes) {
             const std::uint8_t bits = r.byte();
             token.ready = (bits & 1) != 0;
             token.serial = s.serials - r.count();
-            token.arrival = s.now - static_cast<std::int64_t>(r.count() & 0x7FFF'FFFF'FFFF'FFFFu);
-            token.ready_at = (bits & 2) != 0 ? kNever : s.now + r.number();
+            token.arrival = static_cast<std::int64_t>(static_cast<std::uint64_t>(s.now) - r.count());
+            token.ready_at = (bits & 2) != 0 ? kNever : r.time_from(s.now);
             if ((bits & 4) != 0) {
                 token.activity = s.activities - r.below(std::uint64_t{s.activities} + 1);
             }
@@ -413,7 +432,7 @@ Checked<State> read_state(const Net& net, std::span<const std::uint8_t> bytes) {
     for (std::uint32_t k = 0; k < plain && r.fine(); ++k) {
         Pending pending;
         pending.what = r.below(places);
-        pending.at = s.now + r.number();
+        pending.at = r.time_from(s.now);
         if (r.fine() && unready[pending.what]-- == 0) {
             return bad("counts that do not fit the ready times");
         }
@@ -440,13 +459,16 @@ Checked<State> read_state(const Net& net, std::span<const std::uint8_t> bytes) {
     const std::uint32_t occurrences = r.length();
     for (std::uint32_t i = 0; i < occurrences && r.fine(); ++i) {
         Occurrence o;
-        o.at = s.now + r.number();
+        o.at = r.time_from(s.now);
         o.origin = r.below(3);
         o.rank = r.below(1ull << 32);
         o.sequence = r.count();
         o.event = r.below(n.events.size());
         o.activity = optional(0xFFFF'FFFFu);
         o.every = r.number();
+        if (o.every < 0) {
+            return bad("an event that is repeated backwards");
+        }
         s.occurrences.push_back(o);  // sorted: a heap
     }
     s.offered = optional(n.events.size());

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// What can be counted about speed: no allocation per firing after a warm-up, and at most 64 bytes
+// per plain place and arc.
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+
+#include "../bench/models.h"
+#include "puppetri/net/net.h"
+#include "puppetri/run/player.h"
+#include "support/count_allocations.h"
+#include "support/random_net.h"
+
+using namespace puppetri;
+using puppetri::test::allocated_bytes;
+using puppetri::test::allocations;
+
+namespace {
+
+std::uint64_t allocations_of_firings(const net::NetDraft& draft, std::uint64_t warm_up,
+                                     std::uint64_t firings) {
+    const Checked<net::Net> net = net::compile(draft);
+    REQUIRE(net.has_value());
+    run::Player player(*net);
+    player.run({.firings = warm_up});
+    const std::uint64_t before = allocations();
+    player.run({.firings = warm_up + firings});
+    CHECK(player.firings() == warm_up + firings);
+    return allocations() - before;
+}
+
+// Rings of n places, each with a token on every tenth; timed or not.
+net::NetDraft ring(std::uint32_t n, bool timed, std::uint32_t arcs_in) {
+    net::NetDraft draft;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        net::PlaceDraft p;
+        p.path = "p" + std::to_string(i);
+        if (timed) {
+            p.duration = net::DurationDraft::constant({kTicksPerSecond});
+        }
+        if (i % 10 == 0) {
+            p.tokens.push_back({.count = 1, .ready = false, .attributes = {}});
+        }
+        draft.places.push_back(p);
+    }
+    for (std::uint32_t i = 0; i < n; ++i) {
+        net::TransitionDraft t;
+        t.path = "t" + std::to_string(i);
+        for (std::uint32_t k = 0; k < arcs_in; ++k) {
+            net::ArcDraft arc;
+            arc.place = {(i + k) % n};
+            t.inputs.push_back(arc);
+        }
+        net::OutputDraft out;
+        out.place = {(i + 1) % n};
+        t.outputs.push_back(out);
+        draft.transitions.push_back(t);
+    }
+    return draft;
+}
+
+// What net and player of this draft keep allocated, but for names and source positions, which a net
+// without names and captions would not have: counted on top of Net::hot_bytes().
+std::int64_t bytes_of_player(const net::NetDraft& draft) {
+    const Checked<net::Net> net = net::compile(draft);
+    REQUIRE(net.has_value());
+    const std::int64_t before = allocated_bytes();
+    run::Player player(*net);
+    player.run({.firings = 1000});
+    return allocated_bytes() - before + static_cast<std::int64_t>(net->hot_bytes());
+}
+
+}  // namespace
+
+TEST_CASE("after a warm-up a firing allocates nothing [alloc]") {
+    CHECK(allocations_of_firings(bench::philosophers(5), 2000, 20000) == 0);
+    CHECK(allocations_of_firings(bench::philosophers(100), 20000, 20000) == 0);
+    CHECK(allocations_of_firings(bench::hold(100), 2000, 20000) == 0);
+}
+
+TEST_CASE(
+    "after a warm-up a firing allocates nothing, with records, data, events and delays either "
+    "[alloc]") {
+    // Bounded nets only: where tokens pile up, memory has to grow.
+    std::uint64_t tried = 0;
+    for (std::uint64_t i = 0; i < 400; ++i) {
+        RandomStream stream{.key = 1000 + i, .count = 0};
+        const net::NetDraft draft = test::random_net(stream);
+        const Checked<net::Net> net = net::compile(draft);
+        if (!net.has_value() || net->paced()) {
+            continue;
+        }
+        run::Player player(*net, {.seed = i});
+        const auto tokens = [&] {
+            std::uint64_t sum = 0;
+            for (std::uint32_t p = 0; p < draft.places.size(); ++p) {
+                sum += player.tokens(net::PlaceIndex{p});
+            }
+            return sum;
+        };
+        std::uint64_t most = 0;
+        while (player.firings() < 3000 &&
+               player.step({.until = {20000 * test::kRandomNetUnit}}) == run::Stop::kNone) {
+            most = std::max(most, tokens());
+        }
+        if (player.firings() < 3000 || most > 12) {
+            continue;
+        }
+        const std::uint64_t before = allocations();
+        player.run({.until = {40000 * test::kRandomNetUnit}, .firings = 6000});
+        const std::uint64_t made = allocations() - before;
+        if (tokens() > 12 || player.firings() < 6000) {
+            continue;
+        }
+        ++tried;
+        CAPTURE(i);
+        INFO(test::show(draft));
+        CHECK(made <= 2);  // a queue that reaches its longest only now
+    }
+    CHECK(tried > 10);
+}
+
+TEST_CASE("a plain place and an arc cost at most 64 bytes each [alloc]") {
+    for (const bool timed : {false, true}) {
+        // 4000 more places, transitions and 8000 more arcs; then 4000 more arcs.
+        const std::int64_t small = bytes_of_player(ring(4000, timed, 1));
+        const std::int64_t large = bytes_of_player(ring(8000, timed, 1));
+        const std::int64_t arcs = bytes_of_player(ring(4000, timed, 2));
+        const double per_cell =
+            static_cast<double>(large - small) / 4000;  // one place, one transition, two arcs
+        const double per_arc = static_cast<double>(arcs - small) / 4000;
+        MESSAGE(std::string(timed ? "timed: " : "untimed: ")
+                << per_arc << " bytes per arc, " << per_cell
+                << " per place with its transition and two arcs");
+        CHECK(per_arc <= 64);
+        CHECK(per_cell - 2 * per_arc <= 2 * 64);  // a place and a transition
+    }
+}
