@@ -32,7 +32,8 @@ Rule Builder::rule(std::uint32_t node) {
         }
         return has_token(form, Kind::kLeads) ? RuleKind::kLeadsTo : RuleKind::kTakesAtMost;
     };
-    if (nodes_[form + 1].begin == nodes_[form].begin && nodes_[form].next > form + 1) {
+    const bool has_children = nodes_[form].next > form + 1;
+    if (has_children && nodes_[form + 1].begin == nodes_[form].begin) {
         out.kind = binary();
     } else {
         switch (first(form).kind) {
