@@ -9,88 +9,117 @@
 namespace puppetri::cli {
 namespace {
 
-struct Row {
-    std::string name;
-    std::string cells;
-};
+constexpr int kMostBands = 4;
+constexpr int kRoomForName = 6;  // columns that a movement should have on average
 
-class Chart {
+// A stretch of time drawn as one block of rows, like a system of a music score.
+class Band {
    public:
-    Chart(SimTime end, int width) : end_s_(end.seconds()), width_(static_cast<std::size_t>(width)) {}
+    Band(double begin_s, double length_s, std::size_t width) : begin_s_(begin_s), length_s_(length_s), width_(width) {}
 
-    std::size_t column(SimTime t) const {
-        const double c = end_s_ > 0 ? t.seconds() / end_s_ * static_cast<double>(width_) : 0;
-        return std::min(width_, static_cast<std::size_t>(c < 0 ? 0 : c));
-    }
-
-    void add(const std::string& name, const stage::ScoreEntry& entry) {
-        auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.name == name; });
-        if (row == rows_.end()) {
-            rows_.push_back({name, std::string(width_ + 1, ' ')});
-            row = rows_.end() - 1;
+    // A movement of row `row`; what was drawn there before ends.
+    void add(std::string& row, const stage::ScoreEntry& entry) const {
+        const double from = (entry.start.seconds() - begin_s_) / length_s_;
+        const double to = entry.left == SimTime::never() ? 1 : (entry.left.seconds() - begin_s_) / length_s_;
+        if (from >= 1 || to <= 0) {
+            return;
         }
-        const std::size_t begin = column(entry.start);
-        const std::size_t end = std::max(begin + 1, column(std::min(entry.left, entry.end)));
-        std::string& cells = row->cells;
-        for (std::size_t c = begin; c < end && c < cells.size(); ++c) {
-            cells[c] = ' ';
-        }
-        if (begin < cells.size()) {
-            cells[begin] = '|';
-        }
-        // A name that does not fit says nothing in one or two letters.
+        const bool goes_on = from < 0;
+        const auto begin = goes_on ? 0 : static_cast<std::size_t>(from * static_cast<double>(width_));
+        const auto end = std::min(width_, std::max(begin + 1, static_cast<std::size_t>(to * static_cast<double>(width_))));
+        std::fill(row.begin() + static_cast<std::ptrdiff_t>(begin), row.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+        row[begin] = goes_on ? '.' : '|';
         const std::size_t room = end - begin - 1;
+        // One or two letters say nothing.
         if (room >= std::min<std::size_t>(entry.movement.size(), 3)) {
-            for (std::size_t i = 0; i < entry.movement.size() && i < room && begin + 1 + i < width_; ++i) {
-                cells[begin + 1 + i] = entry.movement[i];
-            }
+            std::copy_n(entry.movement.begin(), std::min(room, entry.movement.size()),
+                        row.begin() + static_cast<std::ptrdiff_t>(begin + 1));
         }
     }
 
-    std::string text() {
-        std::size_t name_width = 0;
-        for (const Row& r : rows_) {
-            name_width = std::max(name_width, r.name.size());
-        }
-        std::string out = axis(name_width);
-        for (Row& r : rows_) {
-            r.cells.erase(r.cells.find_last_not_of(' ') + 1);
-            out += "  " + r.name + std::string(name_width - r.name.size() + 2, ' ') + r.cells + "\n";
-        }
-        return out;
-    }
-
-   private:
-    std::string axis(std::size_t name_width) const {
+    std::string axis(std::size_t indent) const {
         // The smallest round step that leaves room for its labels.
         double step_s = 0.1;
         const double kFactors[] = {2, 2.5, 2};
-        for (int i = 0; end_s_ / step_s * 8 > static_cast<double>(width_); ++i) {
+        for (int i = 0; length_s_ / step_s * 10 > static_cast<double>(width_); ++i) {
             step_s *= kFactors[i % 3];
         }
-        std::string line(name_width + 4 + width_ + 10, ' ');
-        for (int i = 0; end_s_ > 0 && i * step_s <= end_s_ + 1e-9; ++i) {
-            const std::string label = number_to_text(static_cast<double>(static_cast<long>(i * step_s * 10 + 0.5)) / 10) + " s";
-            const auto at = name_width + 4 + static_cast<std::size_t>(i * step_s / end_s_ * static_cast<double>(width_));
-            line.replace(at, label.size(), label);
+        std::string line(indent + width_ + 12, ' ');
+        for (int i = 0; i * step_s <= length_s_ + 1e-9; ++i) {
+            const double at_s = begin_s_ + i * step_s;
+            const std::string label = number_to_text(static_cast<double>(static_cast<long>(at_s * 10 + 0.5)) / 10) + " s";
+            line.replace(indent + static_cast<std::size_t>(i * step_s / length_s_ * static_cast<double>(width_)),
+                         label.size(), label);
         }
         line.erase(line.find_last_not_of(' ') + 1);
         return line + "\n";
     }
 
-    double end_s_;
+   private:
+    double begin_s_, length_s_;
     std::size_t width_;
-    std::vector<Row> rows_;
 };
+
+// The longest round length that gives movements room on average.
+double band_length_s(const stage::Performance& performance, double end_s, std::size_t rows, std::size_t width) {
+    const double mean_s = end_s * static_cast<double>(rows) / static_cast<double>(performance.score().size());
+    const double wanted_s = mean_s * static_cast<double>(width) / kRoomForName;
+    double length_s = 1;
+    const double kFactors[] = {2, 2.5, 2};
+    for (int i = 0; length_s * kFactors[i % 3] <= wanted_s; ++i) {
+        length_s *= kFactors[i % 3];
+    }
+    return std::min(length_s, end_s);
+}
 
 }  // namespace
 
-std::string score_chart(const stage::Performance& performance, SimTime end, int width) {
-    Chart chart(end, width);
-    for (const stage::ScoreEntry& entry : performance.score()) {
-        chart.add(entry.actor.empty() ? entry.prop : entry.actor, entry);
+std::string score_chart(const stage::Performance& performance, SimTime end, int columns) {
+    const auto width = static_cast<std::size_t>(columns);
+    const double end_s = end.seconds();
+    if (performance.score().empty() || end_s <= 0) {
+        return "";
     }
-    return performance.score().empty() ? "" : chart.text();
+    const auto row_of = [](const stage::ScoreEntry& entry) -> const std::string& {
+        return entry.actor.empty() ? entry.prop : entry.actor;
+    };
+    // In the order of the cast.
+    std::vector<std::string> names;
+    for (const stage::ActorView& a : performance.actors()) {
+        names.push_back(a.name);
+    }
+    for (const stage::PropView& p : performance.props()) {
+        names.push_back(p.name);
+    }
+    std::size_t name_width = 0;
+    std::vector<std::string> used;
+    for (const std::string& name : names) {
+        const auto moves = [&](const stage::ScoreEntry& entry) { return row_of(entry) == name; };
+        if (std::any_of(performance.score().begin(), performance.score().end(), moves)) {
+            used.push_back(name);
+            name_width = std::max(name_width, name.size());
+        }
+    }
+    const double length_s = band_length_s(performance, end_s, used.size(), width);
+    std::string text;
+    for (int i = 0; i < kMostBands && i * length_s < end_s - 1e-9; ++i) {
+        const Band band(i * length_s, length_s, width);
+        text += (i > 0 ? "\n" : "") + band.axis(name_width + 4);
+        for (const std::string& name : used) {
+            std::string row(width, ' ');
+            for (const stage::ScoreEntry& entry : performance.score()) {
+                if (row_of(entry) == name) {
+                    band.add(row, entry);
+                }
+            }
+            row.erase(row.find_last_not_of(' ') + 1);
+            text += "  " + name + std::string(name_width - name.size() + 2, ' ') + row + "\n";
+        }
+    }
+    if (kMostBands * length_s < end_s - 1e-9) {
+        text += "  ... (the first " + number_to_text(kMostBands * length_s) + " s; --score FILE has all)\n";
+    }
+    return text;
 }
 
 }  // namespace puppetri::cli
