@@ -359,6 +359,12 @@ class Compiler {
             !draft.raises.empty() || !draft.assignments.empty() || !special.must_be_clean.empty()) {
             flags |= kFiresSpecially;
         }
+        if (draft.delay && draft.delay->servers == 1 && !special.depends &&
+            special.events.empty() && draft.delay->memory == DelayMemory::kEnabling &&
+            special.arcs.empty() && special.outputs.empty() && special.raises.empty() &&
+            special.assignments.empty() && special.must_be_clean.empty()) {
+            flags |= kOnlyDelayed;
+        }
         out_.flags.push_back(flags);
         if (flags != 0) {
             if (out_.special_of.empty()) {
@@ -584,11 +590,16 @@ class Compiler {
                    "more than 65535 different priorities", "use fewer");
             return;
         }
-        for (const std::int64_t priority : priorities_) {
+        out_.level_has_odds.assign(out_.level_priority.size(), 0);
+        for (std::uint32_t t = 0; t < priorities_.size(); ++t) {
+            const std::int64_t priority = priorities_[t];
             const auto it =
                 std::lower_bound(out_.level_priority.begin(), out_.level_priority.end(), priority,
                                  [](std::int64_t a, std::int64_t b) { return a > b; });
             out_.level.push_back(static_cast<std::uint16_t>(it - out_.level_priority.begin()));
+            if ((out_.flags[t] & kHasOdds) != 0) {
+                out_.level_has_odds[out_.level[t]] = 1;
+            }
         }
     }
 

@@ -39,6 +39,21 @@ bool Engine::evaluate(ProgramIndex program, Value& out) {
     return e.fault == EvalFault::kNone;
 }
 
+// The inverse of the distribution function; false: beyond the end of time.
+bool Engine::draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& count,
+                              std::int64_t& ticks) {
+    const double seconds = -mean_s * puppetri::log(uniform_from_bits(random_bits(key, count++)));
+    const double exact = seconds * static_cast<double>(kTicksPerSecond);
+    constexpr double kRound =
+        0x1.8p52;  // adding and taking away rounds to a whole number, ties to even
+    if (exact < 0x1p51) {
+        ticks = static_cast<std::int64_t>((exact + kRound) - kRound);
+        return true;
+    }
+    ticks = exact < 9.2e18 ? static_cast<std::int64_t>(std::nearbyint(exact)) : -1;
+    return ticks >= 0;
+}
+
 bool Engine::draw_place(std::uint32_t p, std::int64_t& ticks) {
     const std::uint32_t number = tables_->place_duration[p];
     if (number == kNoIndex) {
@@ -89,6 +104,11 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
         ticks = d.ticks;
         return true;
     }
+    if (random_ && d.constants.size() == 1 && d.distribution == DistributionKind::kExponential &&
+        d.kind == DurationKind::kDistribution) {
+        return draw_exponential(d.constants[0], key, count, ticks) ||
+               wrong("a drawn duration goes beyond the end of time");
+    }
     if (d.kind == DurationKind::kExpression) {
         if (!evaluate(d.a, ticks) || ticks < 0) {
             return wrong("a duration is negative or no number");
@@ -137,9 +157,7 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
             }
         }
         RandomStream stream{key, count};
-        const double seconds = d.distribution == DistributionKind::kExponential
-                                   ? -parameters[0] * puppetri::log(stream.uniform())
-                                   : sample(d.distribution, parameters, stream);
+        const double seconds = sample(d.distribution, parameters, stream);
         count = stream.count;
         const double exact = seconds * static_cast<double>(kTicksPerSecond);
         if (!(exact >= -0.5)) {

@@ -137,6 +137,7 @@ void Engine::restore(State state) {
 State Engine::save() const {
     State s = state_;
     for (Lottery& l : s.lotteries) {
+        settle_lottery(l);
         std::erase_if(l.tickets,
                       [this](const Ticket& t) { return hot_[t.transition].candidate != t.stamp; });
         std::sort(l.tickets.begin(), l.tickets.end(), [](const Ticket& a, const Ticket& b) {
@@ -201,8 +202,10 @@ void Engine::leave(std::uint32_t t) {
             l.fresh.clear();
         }
     } else if (--l.live_raced == 0) {
-        state_.lotteries[level].tickets.clear();
-        state_.lotteries[level].clock = 0;
+        Lottery& lottery = state_.lotteries[level];
+        lottery.tickets.clear();
+        lottery.clock = 0;
+        lottery.lazy = false;
     }
     h.candidate = (h.candidate | kStatus) + 1;
 }
@@ -288,9 +291,22 @@ double Engine::ticket(std::uint32_t t) {
     return (tables_->flags[t] & kHasOdds) != 0 ? e / odds(t) : e;
 }
 
+// Logarithms that could be put off so far.
+void Engine::settle_lottery(Lottery& lottery) {
+    if (lottery.lazy) {
+        for (Ticket& t : lottery.tickets) {
+            t.key = -puppetri::log(-t.key);  // keeps the order of the heap
+        }
+        lottery.clock = lottery.last_u < 1 ? -puppetri::log(lottery.last_u) : 0;
+        lottery.lazy = false;
+    }
+}
+
 // Who became fireable since the last firing draws a ticket, counted from the lottery's clock; the
 // least wins and sets the clock; losers keep theirs. When no loser is left, the clock starts again
-// from 0: what has no partner to be compared with needs no common origin.
+// from 0: what has no partner to be compared with needs no common origin. As long as all tickets
+// count from 0 and odds are 1, the least ticket is that of the greatest u, and the logarithm waits
+// until a newcomer has to be compared.
 std::uint32_t Engine::race(std::uint32_t level) {
     Level& l = levels_[level];
     Lottery& lottery = state_.lotteries[level];
@@ -298,22 +314,36 @@ std::uint32_t Engine::race(std::uint32_t level) {
         return a.key != b.key ? a.key < b.key
                               : tables_->path_hash[a.transition] < tables_->path_hash[b.transition];
     };
-    for (const Fresh& f : l.fresh) {
-        Hot& h = hot_[f.transition];
-        if (h.candidate == f.stamp) {
-            h.candidate += kRaced - kFresh;
-            heap_push<2>(lottery.tickets,
-                         {lottery.clock + ticket(f.transition), f.transition, h.candidate}, before);
+    if (l.live_fresh != 0) {
+        if (l.live_raced == 0) {
+            lottery.lazy = tables_->level_has_odds[level] == 0;
+            lottery.last_u = 1;
+        } else {
+            settle_lottery(lottery);
         }
+        for (const Fresh& f : l.fresh) {
+            Hot& h = hot_[f.transition];
+            if (h.candidate != f.stamp) {
+                continue;
+            }
+            h.candidate += kRaced - kFresh;
+            const std::uint32_t t = f.transition;
+            const double key =
+                lottery.lazy
+                    ? -uniform_from_bits(random_bits(ticket_keys_[t], state_.ticket_draws[t]++))
+                    : lottery.clock + ticket(t);
+            heap_push<2>(lottery.tickets, {key, t, h.candidate}, before);
+        }
+        l.live_raced += l.live_fresh;
+        l.live_fresh = 0;
+        l.fresh.clear();
     }
-    l.live_raced += l.live_fresh;
-    l.live_fresh = 0;
-    l.fresh.clear();
     for (;;) {
         const Ticket winner = lottery.tickets.front();
         heap_pop<2>(lottery.tickets, before);
         if (hot_[winner.transition].candidate == winner.stamp) {
-            lottery.clock = winner.key;
+            (lottery.lazy ? lottery.last_u : lottery.clock) =
+                lottery.lazy ? -winner.key : winner.key;
             leave(winner.transition);
             return winner.transition;
         }
@@ -448,9 +478,13 @@ void Engine::fire(std::uint32_t t) {
     if (options_.listener != nullptr) {
         options_.listener->fired({state_.now}, {t});
     }
-    if ((tables_->flags[t] & kFiresSpecially) != 0) {
-        fire_special(t);
-        return;
+    const std::uint8_t flags = tables_->flags[t];
+    if ((flags & kFiresSpecially) != 0) {
+        if ((flags & kOnlyDelayed) == 0) {
+            fire_special(t);
+            return;
+        }
+        state_.clocks[tables_->specials[tables_->special_of[t]].delay].clear();
     }
     take_plain(t);
     if (!touch_list_.empty()) {

@@ -80,6 +80,12 @@ void Engine::look_again(bool intermediate) {
         const std::uint32_t t = touch_list_[i];
         const std::uint32_t number = tables_->special_of[t];
         const Special& s = tables_->specials[number];
+        if ((tables_->flags[t] & kOnlyDelayed) != 0) {
+            if (!intermediate) {
+                look_at_delay(t, number, s.delay);
+            }
+            continue;  // in the intermediate marking its arcs have closed it already
+        }
         const bool yes = marked(s, intermediate);
         if (intermediate) {
             if (!yes) {
@@ -160,6 +166,42 @@ std::uint32_t Engine::running_clocks(std::uint32_t delay) const {
     return n;
 }
 
+bool Engine::start_clock(std::uint32_t delay, std::int64_t ticks) {
+    Clock clock;
+    if (__builtin_add_overflow(state_.now, ticks, &clock.at)) {
+        fail_transition(tables_->delays[delay].transition, "time-overflow",
+                        "its delay ends after the end of time", "shorten it");
+        return false;
+    }
+    clock.phase = ticks == 0 ? Clock::kDue : Clock::kRunning;
+    state_.clocks[delay].push_back(clock);
+    if (ticks != 0) {
+        state_.heap.push({clock.at, Pending::kDelay | delay, 0});
+    }
+    return true;
+}
+
+// The short way for one clock without memory and nothing else.
+void Engine::look_at_delay(std::uint32_t t, std::uint32_t number, std::uint32_t delay) {
+    touched_[number] = 0;
+    if (hot_[t].unsatisfied != 0) {
+        gate_closed(t);
+        return;
+    }
+    marked_[number] = 1;
+    if (state_.clocks[delay].empty()) {
+        std::int64_t ticks = 0;
+        if (!draw(tables_->delays[delay].duration, delay_keys_[delay], state_.delay_draws[delay],
+                  ChoiceKind::kDelay, t, ticks) ||
+            !start_clock(delay, ticks)) {
+            return;
+        }
+    }
+    if (state_.clocks[delay][0].phase == Clock::kDue && (hot_[t].candidate & 3) == 0) {
+        enter(t);
+    }
+}
+
 // Brings the number of clocks that run or have run out to `wanted`, at most one per server. The
 // youngest stop first; with memory `age` they keep what is left and go on, the last stopped first.
 void Engine::set_clocks(std::uint32_t delay, std::uint32_t wanted) {
@@ -183,7 +225,6 @@ void Engine::set_clocks(std::uint32_t delay, std::uint32_t wanted) {
         const auto suspended = std::find_if(clocks.begin(), clocks.end(), [](const Clock& c) {
             return c.phase == Clock::kSuspended;
         });
-        Clock clock;
         std::int64_t ticks = 0;
         if (suspended != clocks.end()) {
             ticks = suspended->at;
@@ -198,15 +239,8 @@ void Engine::set_clocks(std::uint32_t delay, std::uint32_t wanted) {
                 return;
             }
         }
-        if (__builtin_add_overflow(state_.now, ticks, &clock.at)) {
-            fail_transition(d.transition, "time-overflow", "its delay ends after the end of time",
-                            "shorten it");
+        if (!start_clock(delay, ticks)) {
             return;
-        }
-        clock.phase = ticks == 0 ? Clock::kDue : Clock::kRunning;
-        clocks.push_back(clock);
-        if (ticks != 0) {
-            state_.heap.push({clock.at, Pending::kDelay | delay, 0});
         }
         ++active;
     }

@@ -107,6 +107,7 @@ class Engine final : private Code::Reader {
     std::uint32_t select();
     std::uint32_t race(std::uint32_t level);
     std::uint32_t ask_tie(std::uint32_t level);
+    static void settle_lottery(Lottery& lottery);
     double ticket(std::uint32_t t);
     void fire(std::uint32_t t);
     void take_plain(std::uint32_t t);
@@ -127,6 +128,8 @@ class Engine final : private Code::Reader {
     bool marked(const Special& s, bool intermediate);
     std::uint32_t degree(const Special& s) const;
     void set_clocks(std::uint32_t delay, std::uint32_t wanted);
+    bool start_clock(std::uint32_t delay, std::int64_t ticks);
+    void look_at_delay(std::uint32_t t, std::uint32_t number, std::uint32_t delay);
     std::uint32_t running_clocks(std::uint32_t delay) const;
     bool offered_to(const Special& s) const;
     double odds(std::uint32_t t);
@@ -172,6 +175,8 @@ class Engine final : private Code::Reader {
     bool draw_place(std::uint32_t p, std::int64_t& ticks);
     bool draw(const DurationTable& d, std::uint64_t key, std::uint64_t& count, ChoiceKind kind,
               std::uint32_t element, std::int64_t& ticks);
+    bool draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& count,
+                          std::int64_t& ticks);
     bool evaluate(ProgramIndex program, Value& out);
 
     // faults.cpp

@@ -110,9 +110,14 @@ struct Ticket {
     std::uint32_t stamp = 0;  // of the engine
 };
 
+// The race of one priority. While nobody has joined since its first draw (`lazy`), tickets of odds
+// 1 are compared by their uniform numbers, greatest first: keys are -u, the clock is -ln(last_u),
+// and no logarithm has been taken.
 struct Lottery {
     std::vector<Ticket> tickets;  // a heap, least key first; may hold stale ones
     double clock = 0;
+    bool lazy = false;
+    double last_u = 1;
 };
 
 struct State {

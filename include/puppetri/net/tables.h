@@ -124,6 +124,8 @@ enum TransitionFlag : std::uint8_t {
     kFiresSpecially = 1,  // more than counts happens when it fires
     kGated = 2,           // satisfied arcs are not enough: guard, binding, delay or event
     kHasOdds = 4,         // odds other than 1
+    kOnlyDelayed =
+        8,  // gated by a delay with one server and enabling memory, and nothing else is special
 };
 
 struct NetTables {
@@ -155,7 +157,9 @@ struct NetTables {
     std::vector<DelayTable> delays;
     std::vector<std::uint16_t> level;          // 0: the highest priority
     std::vector<std::int64_t> level_priority;  // descending
-    std::vector<std::uint64_t> path_hash;      // of transitions, for the log
+    std::vector<std::uint8_t>
+        level_has_odds;                    // some transition of the priority has odds other than 1
+    std::vector<std::uint64_t> path_hash;  // of transitions, for the log
     std::vector<std::uint32_t> unconditional;  // transitions without any condition on counts
 
     Rows<std::uint32_t> event_listeners;
