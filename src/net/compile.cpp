@@ -98,8 +98,8 @@ class Compiler {
             const PlaceDraft& place = net_.places[p];
             const DurationDraft d = effective_duration(place);
             zero[p] = d.kind == DurationKind::kConstant && d.a.literal_value() == 0;
-            out_.paced = out_.paced && (zero[p] || d.kind == DurationKind::kOpen ||
-                                        d.kind == DurationKind::kAs);
+            out_.paced = out_.paced &&
+                         (zero[p] || d.kind == DurationKind::kOpen || d.kind == DurationKind::kAs);
             if (!zero[p]) {
                 raise(p, PlaceKind::kTimed);
             }
@@ -699,10 +699,14 @@ class Compiler {
 Checked<Net> compile(const NetDraft& draft) {
     Diagnostics defects;
     Lowered lowered = lower_draft(draft, defects);
-    if (has_errors(defects)) {
-        return Unexpected(std::move(defects));
+    // All defects are told at once; only a draft that mentions what it does not have cannot be
+    // looked at further.
+    const bool well_formed = std::none_of(defects.begin(), defects.end(), [](const Diagnostic& d) {
+        return d.code == "unknown-index";
+    });
+    if (well_formed) {
+        check_lowered(lowered.net, defects);
     }
-    check_lowered(lowered.net, defects);
     if (has_errors(defects)) {
         return Unexpected(std::move(defects));
     }
