@@ -14,24 +14,22 @@
 #include "puppetri/base/hash.h"
 #include "puppetri/base/random.h"
 #include "puppetri/base/rational.h"
+#include "puppetri/net/log_hash.h"
 
 namespace puppetri::bench {
 namespace {
 
-// The log hash of the engine.
 class LogHash {
  public:
     void add(std::int64_t now, std::uint64_t path_hash) {
-        constexpr std::uint64_t kA = 0x9E3779B185EBCA87u;
-        constexpr std::uint64_t kB = 0xC2B2AE3D27D4EB4Fu;
-        std::uint64_t h = value_ ^ (static_cast<std::uint64_t>(now) * kB);
-        h = std::rotl(h * kA, 29) ^ path_hash;
-        value_ = h * kB;
+        value_ = net::log_hash_step(value_, now, path_hash);
+        ++firings_;
     }
-    std::uint64_t value() const { return value_; }
+    std::uint64_t value() const { return net::log_hash_value(value_, firings_); }
 
  private:
     std::uint64_t value_ = 0;
+    std::uint64_t firings_ = 0;
 };
 
 // First in, first out.

@@ -6,11 +6,11 @@
 #include "puppetri/net/engine.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "heap.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/base/require.h"
+#include "puppetri/net/log_hash.h"
 
 namespace puppetri::net {
 
@@ -466,12 +466,9 @@ void Engine::add_timed(std::uint32_t p, std::int64_t ticks, std::uint32_t fifo) 
 }
 
 void Engine::fire(std::uint32_t t) {
-    constexpr std::uint64_t kA = 0x9E3779B185EBCA87u, kB = 0xC2B2AE3D27D4EB4Fu;
     ++state_.firings;
     state_.last = t;
-    std::uint64_t h = state_.log_hash ^ (static_cast<std::uint64_t>(state_.now) * kB);
-    h = std::rotl(h * kA, 29) ^ tables_->path_hash[t];
-    state_.log_hash = h * kB;
+    state_.log_hash = log_hash_step(state_.log_hash, state_.now, tables_->path_hash[t]);
     if (++state_.instant_firings + 1024 > options_.firings_per_instant) {
         watch_instant(t);
     }

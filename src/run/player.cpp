@@ -8,6 +8,7 @@
 #include "puppetri/base/hash.h"
 #include "puppetri/base/require.h"
 #include "puppetri/net/engine.h"
+#include "puppetri/net/log_hash.h"
 
 namespace puppetri::run {
 
@@ -109,7 +110,7 @@ net::TransitionIndex Player::last() const { return {data_->engine.state().last};
 
 std::uint64_t Player::log_hash() const {
     const net::State& s = data_->engine.state();
-    return mix64(s.log_hash ^ s.firings);
+    return net::log_hash_value(s.log_hash, s.firings);
 }
 
 SimTime Player::next_time() const { return {data_->engine.next_time()}; }
