@@ -47,6 +47,26 @@ ExprOp kernel_op(Op op) {
     }
 }
 
+const char* name_for_people(ValueKind kind) {
+    switch (kind) {
+        case ValueKind::kBool:
+            return "something that is true or false";
+        case ValueKind::kInt:
+            return "a whole number";
+        case ValueKind::kReal:
+            return "a number";
+        case ValueKind::kTime:
+            return "a time";
+        case ValueKind::kEnum:
+            return "a value of its enumeration";
+        case ValueKind::kActor:
+            return "an actor";
+        case ValueKind::kProp:
+            return "a prop";
+    }
+    return "a value";
+}
+
 bool is_word(std::string_view name) {
     for (const char* word : {"left", "right", "air", "floor"}) {
         if (name == word) {
@@ -399,6 +419,11 @@ std::optional<Expr> Elaboration::as_expr_of(const Term& term, ValueType type, la
     if (Number* n = std::get_if<Number>(&fitted); n != nullptr && type.kind == ValueKind::kTime) {
         *n = in_time_unit(*n, where);
     }
+    const Number* number = std::get_if<Number>(&fitted);
+    if (number != nullptr && type.kind == ValueKind::kTime && number->dimension != lang::dimension::kTime) {
+        wrong(where, "a time", fitted, "write it with a unit such as s");
+        return std::nullopt;
+    }
     auto e = as_expr(fitted, where);
     if (!e || e->type() == type) {
         return e;
@@ -406,8 +431,7 @@ std::optional<Expr> Elaboration::as_expr_of(const Term& term, ValueType type, la
     if (type.kind == ValueKind::kReal && e->type().kind == ValueKind::kInt) {
         return apply(ExprOp::kToReal, {std::move(*e)}, where);
     }
-    wrong(where, std::string("a value of type ") + name_of(type.kind), term,
-          type.kind == ValueKind::kTime ? "write it with a unit such as s" : "");
+    wrong(where, name_for_people(type.kind), term);
     return std::nullopt;
 }
 

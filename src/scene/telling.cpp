@@ -35,7 +35,7 @@ void Elaboration::wrong(lang::Span where, const std::string& wanted, const Term&
     }
     const Number* number = std::get_if<Number>(&got);
     error(number != nullptr ? "wrong-unit" : "wrong-type", where,
-          "this is " + describe(got) + " where " + wanted + " is wanted", std::move(remedy));
+          "this is " + describe(got) + " where " + wanted + " is wanted", remedy.empty() ? "write " + wanted + " here" : std::move(remedy));
 }
 
 }  // namespace puppetri::scene
