@@ -43,8 +43,7 @@ Term Elaboration::number_of(const lang::Expr& e, const Rational& written, const 
     }
     const std::optional<FrameRate> rate = frame_rate_of(where.file);
     if (!rate) {
-        error("no-frame-rate", where, "frames are counted, but no frame rate is declared",
-              "write `frames 24 per second` in the header of the file or of the scene");
+        error("wrong-unit", where, "a frame rate cannot be counted in frames", "write `frames 24 per second`");
         return Nothing{};
     }
     // One frame is denominator / numerator seconds.
@@ -184,7 +183,7 @@ std::optional<SimTime> Elaboration::constant_time(const lang::Expr& e, const Sco
 }
 
 std::optional<FrameRate> Elaboration::frame_rate_of(std::uint32_t file) {
-    // The rate that the file declares, else the scene's.
+    // The rate that the file declares, else the scene's, else 24.
     for (const std::uint32_t f : {file, std::uint32_t{0}}) {
         if (f >= library_.files.size()) {
             continue;
@@ -207,7 +206,7 @@ std::optional<FrameRate> Elaboration::frame_rate_of(std::uint32_t file) {
         }
         return FrameRate{n->exact.numerator, n->exact.denominator};
     }
-    return std::nullopt;
+    return FrameRate{};
 }
 
 }  // namespace puppetri::scene

@@ -37,10 +37,6 @@ void Elaboration::read_header() {
             break;
         case lang::HorizonKind::kFrame:
             if (const auto frame = constant_integer(header.horizon, {}, "the last frame")) {
-                if (!header.frames_per_second) {
-                    error("no-frame-rate", header.horizon.span, "frames are counted, but no frame rate is declared",
-                          "write `frames 24 per second` before it");
-                }
                 scene.horizon.time = scene.frame_rate.time_of_frame(*frame);
             }
             break;
