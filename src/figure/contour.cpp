@@ -78,7 +78,11 @@ class Contourer {
             const auto& p = out.positions_model;
             const double first = (1.5 - dot(n[q[0]], n[q[2]])) * length(p[q[0]] - p[q[2]]);
             const double second = (1.5 - dot(n[q[1]], n[q[3]])) * length(p[q[1]] - p[q[3]]);
-            if (first <= second) {
+            // Ties go by a measure that is the same on both sides of the body, so that mirrored quads are divided alike.
+            const auto measure = [&](std::uint32_t v) { return std::fabs(p[v].x) + 0.37 * p[v].y + 0.21 * p[v].z; };
+            const bool tie = std::fabs(first - second) < 1e-7 * (first + second);
+            const bool by_measure = std::max(measure(q[0]), measure(q[2])) > std::max(measure(q[1]), measure(q[3]));
+            if (tie ? by_measure : first < second) {
                 out.triangles.push_back({q[0], q[1], q[2]});
                 out.triangles.push_back({q[0], q[2], q[3]});
             } else {
@@ -140,7 +144,11 @@ class Contourer {
         }
         if (n.depth >= wanted) {
             evaluate_corners(index, size);
-            if (n.depth >= wanted + kExtraLevels || simple(nodes_[index].corner)) {
+            // A thin gap may pass between all corners: the middle tells.
+            const auto& corner = nodes_[index].corner;
+            const bool all_alike = std::all_of(corner.begin(), corner.end(), [&](float c) { return (c < 0) == (corner[0] < 0); });
+            const bool missed = all_alike && (shape_.distance((box.low + box.high) * 0.5, here) < 0) != (corner[0] < 0);
+            if (n.depth >= wanted + kExtraLevels || (simple(corner) && !missed)) {
                 return;
             }
         }
@@ -382,6 +390,9 @@ class Contourer {
 }  // namespace
 
 double AxisMap::operator()(double u) const {
+    if (odd && u < 0) {
+        return -(*this)(-u);
+    }
     const auto after = std::upper_bound(lattice.begin() + 1, lattice.end() - 1, u);
     const auto i = static_cast<std::size_t>(after - lattice.begin());
     const double t = (u - lattice[i - 1]) / (lattice[i] - lattice[i - 1]);

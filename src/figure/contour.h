@@ -15,6 +15,7 @@ namespace puppetri::figure {
 // arm) and short where it bends (an elbow). A monotone, piecewise linear map from lattice units to metres.
 struct AxisMap {
     std::vector<double> lattice, model_m;  // ascending knots; outside of them the end pieces go on
+    bool odd = false;                      // knots are those of the positive half: f(-u) = -f(u)
     double operator()(double u) const;
 };
 

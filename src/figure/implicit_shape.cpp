@@ -22,6 +22,13 @@ FieldSample smooth_min(const FieldSample& a, const FieldSample& b, double k) {
     return {nearer.distance - k * h * h / 4, nearer.gradient * (1 - w) + farther.gradient * w};
 }
 
+double smooth_min(double a, double b, double k) {
+    const double h = std::max(0.0, 1 - std::fabs(a - b) / k);
+    return std::min(a, b) - k * h * h / 4;
+}
+
+Vec3 mirrored(Vec3 p) { return {-p.x, p.y, p.z}; }
+
 FieldSample negative(const FieldSample& s) { return {-s.distance, -s.gradient}; }
 
 }  // namespace
@@ -72,9 +79,22 @@ FieldSample ImplicitShape::sample_of(const Prepared& c, Vec3 p_model) {
     return {(f.distance - f.radius) / steepness, c.turned ? rotate(conjugate(c.local_from_model), g) : g};
 }
 
+double ImplicitShape::pair_distance(const Prepared& c, Vec3 p) {
+    return c.paired ? smooth_min(distance_to(c, p), distance_to(c, mirrored(p)), c.blend_m) : distance_to(c, p);
+}
+
+FieldSample ImplicitShape::pair_sample(const Prepared& c, Vec3 p) {
+    if (!c.paired) {
+        return sample_of(c, p);
+    }
+    FieldSample other = sample_of(c, mirrored(p));
+    other.gradient = mirrored(other.gradient);
+    return smooth_min(sample_of(c, p), other, c.blend_m);
+}
+
 bool ImplicitShape::near(int i, Vec3 p, double slack_m) const {
     const Prepared& c = prepared_[static_cast<std::size_t>(i)];
-    return distance_to(c, p) < 2 * c.blend_m + slack_m;
+    return pair_distance(c, p) < 2 * c.blend_m + slack_m;
 }
 
 void Bounds::add(Vec3 p) {
@@ -100,7 +120,11 @@ void ImplicitShape::add(const RoundCone& cone) {
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3 q = end + Vec3{(corner & 1) ? r : -r, (corner & 2) ? r : -r, (corner & 4) ? r : -r};
             const Vec3 scaled{q.x * cone.scale.x, q.y * cone.scale.y, q.z * cone.scale.z};
-            box.add(cone.origin_model + rotate(cone.model_from_local, scaled));
+            const Vec3 at = cone.origin_model + rotate(cone.model_from_local, scaled);
+            box.add(at);
+            if (cone.paired) {
+                box.add(mirrored(at));
+            }
         }
     }
     Prepared c;
@@ -111,6 +135,7 @@ void ImplicitShape::add(const RoundCone& cone) {
     c.turned = !(cone.model_from_local == Quat{});
     c.squashed = !(cone.scale == Vec3{1, 1, 1});
     c.carve = cone.carve;
+    c.paired = cone.paired;
     c.radius_a = cone.radius_a;
     c.blend_m = cone.blend_m;
     const double l = length(cone.b - cone.a);
@@ -137,11 +162,8 @@ double ImplicitShape::distance(Vec3 p, std::span<const std::uint16_t> active) co
     double all = 1e3;
     for (const std::uint16_t i : active) {
         const Prepared& c = prepared_[i];
-        const double one = distance_to(c, p);
-        const double a = c.carve ? -all : all;
-        const double h = std::max(0.0, 1 - std::fabs(a - one) / c.blend_m);
-        const double joined = std::min(a, one) - c.blend_m * h * h / 4;
-        all = c.carve ? -joined : joined;
+        const double one = pair_distance(c, p);
+        all = c.carve ? -smooth_min(-all, one, c.blend_m) : smooth_min(all, one, c.blend_m);
     }
     return relief_ == nullptr || std::fabs(all) > 0.02 ? all : all - relief_(relief_context_, p);
 }
@@ -150,7 +172,7 @@ FieldSample ImplicitShape::sample(Vec3 p, std::span<const std::uint16_t> active)
     FieldSample all{1e3, {0, 1, 0}};
     for (const std::uint16_t i : active) {
         const Prepared& c = prepared_[i];
-        const FieldSample one = sample_of(c, p);
+        const FieldSample one = pair_sample(c, p);
         all = c.carve ? negative(smooth_min(negative(all), one, c.blend_m)) : smooth_min(all, one, c.blend_m);
     }
     if (relief_ != nullptr && std::fabs(all.distance) < 0.02) {

@@ -26,6 +26,7 @@ struct RoundCone {
     double blend_m = 0.01;    // how far the seam to what came before is rounded
     std::uint8_t level = 0;   // how many times finer than the coarsest cells it is to be meshed (powers of two)
     bool carve = false;       // taken away instead of added
+    bool paired = false;      // joined with its mirror image in x = 0 before both join the rest
 };
 
 // A box along the axes.
@@ -62,12 +63,14 @@ class ImplicitShape {
         Vec3 origin_model, a, along, inverse_scale;
         Quat local_from_model;
         double length_m = 0, tangent = 0, radius_a = 0, widening = 0, blend_m = 0;
-        bool turned = false, squashed = false, carve = false;
+        bool turned = false, squashed = false, carve = false, paired = false;
     };
     struct Foot;
     static Foot foot_of(const Prepared& c, Vec3 p_model);
     static double distance_to(const Prepared& c, Vec3 p_model);
     static FieldSample sample_of(const Prepared& c, Vec3 p_model);
+    static double pair_distance(const Prepared& c, Vec3 p_model);
+    static FieldSample pair_sample(const Prepared& c, Vec3 p_model);
 
     double (*relief_)(const void*, Vec3) = nullptr;
     const void* relief_context_ = nullptr;

@@ -150,8 +150,14 @@ class Tailor {
             }
             if (crossed == 2 && m[k] == kNone) {  // the corner c[last] is cut off
                 body_.triangles[t] = {c[last], m[last], m[next]};
-                extra({c[k], c[next], m[next]});
-                extra({c[k], m[next], m[last]});
+                const auto& p = body_.positions_model;
+                if (length(p[c[k]] - p[m[next]]) <= length(p[c[next]] - p[m[last]])) {
+                    extra({c[k], c[next], m[next]});
+                    extra({c[k], m[next], m[last]});
+                } else {
+                    extra({c[k], c[next], m[last]});
+                    extra({c[next], m[next], m[last]});
+                }
                 return;
             }
         }
@@ -177,6 +183,24 @@ std::array<float, 3> floats(Vec3 v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+// In sharp creases (between fingers, behind the ears) triangles are too coarse to follow the function, and its gradient
+// says little about them: there the normals lean to those of the triangles around.
+void settle_normals(Contour& body) {
+    std::vector<Vec3> around(body.positions_model.size());
+    for (const auto& t : body.triangles) {
+        const Vec3 a = body.positions_model[t[0]];
+        const Vec3 n = cross(body.positions_model[t[1]] - a, body.positions_model[t[2]] - a);
+        for (const std::uint32_t v : t) {
+            around[v] = around[v] + n;
+        }
+    }
+    for (std::size_t v = 0; v < around.size(); ++v) {
+        const Vec3 n = normalized(around[v], body.normals_model[v]);
+        const double agreement = std::clamp((dot(n, body.normals_model[v]) - 0.3) / 0.4, 0.0, 1.0);
+        body.normals_model[v] = normalized(n + (body.normals_model[v] - n) * agreement, n);
+    }
+}
+
 }  // namespace
 
 Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
@@ -188,6 +212,7 @@ Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
     const ContourGrid grid = mannequin_grid(marks);
     Contour body = contour(shape, grid);
     const Tailor tailor(body, shape, marks);
+    settle_normals(body);
     const SkinWeights weights(skeleton, marks);
 
     Mesh mesh;

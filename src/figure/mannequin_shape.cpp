@@ -52,11 +52,13 @@ class Modeller {
 
     double blend = 0.03;
     int level = 0;
+    bool paired = false;
 
    private:
     void add(RoundCone& c) {
         c.blend_m = blend;
         c.level = static_cast<std::uint8_t>(level);
+        c.paired = paired;
         shape_.add(c);
     }
 
@@ -121,23 +123,19 @@ ImplicitShape mannequin_shape(const Landmarks& m) {
     add.blend = 0.05;
     add.limb(off(m.shoulder[0], -0.055, -0.025, 0.0), off(m.shoulder[1], 0.055, -0.025, 0.0), 0.062, 0.062,
              {1, 1, 1.12});
-    for (int s = 0; s < 2; ++s) {
-        const auto side = static_cast<std::size_t>(s);
-        add.blob(shoulders + mirrored(Vec3{0.072, -0.105, 0.058}, s), {0.082, 0.066, 0.046});  // chest
-        add.limb(off(m.neck, 0, 0.040, -0.014),
-                 between(shoulders, m.shoulder[side], 0.75) + Vec3{0, 0.012, -0.012}, 0.042, 0.038);  // trapezius
-    }
-    // Trousers: both thighs before anything lower, so that the crotch is symmetric.
+    // What meets its mirror image in the middle is joined with it first.
+    add.paired = true;
+    add.blob(shoulders + Vec3{0.072, -0.105, 0.058}, {0.082, 0.066, 0.046});  // chest
+    add.limb(off(m.neck, 0, 0.040, -0.014), between(shoulders, m.shoulder[0], 0.75) + Vec3{0, 0.012, -0.012}, 0.042, 0.038);
     add.blend = 0.035;
+    add.limb(off(m.hip[0], 0, -0.02, -0.004), off(m.knee[0], 0, 0.02, 0.004), 0.088, 0.059);  // thigh
+    add.blend = 0.05;
+    add.blob(off(m.hip[0], -0.008, -0.045, -0.046), {0.080, 0.088, 0.070});  // seat
+    add.blob(between(m.hip[0], m.knee[0], 0.42) + Vec3{0.006, 0, 0.018}, {0.066, 0.16, 0.058});
+    add.paired = false;
+    // Trousers below the knee.
     for (std::size_t side = 0; side < 2; ++side) {
-        add.limb(off(m.hip[side], 0, -0.02, -0.004), off(m.knee[side], 0, 0.02, 0.004), 0.088, 0.059);
-    }
-    for (std::size_t side = 0; side < 2; ++side) {
-        const double out = side == 0 ? 1 : -1;
-        const Vec3 hip = m.hip[side], knee = m.knee[side], ankle = m.ankle[side];
-        add.blend = 0.05;
-        add.blob(off(hip, -0.008 * out, -0.045, -0.046), {0.080, 0.088, 0.070});  // seat
-        add.blob(between(hip, knee, 0.42) + Vec3{0.006 * out, 0, 0.018}, {0.066, 0.16, 0.058});
+        const Vec3 knee = m.knee[side], ankle = m.ankle[side];
         add.blend = 0.03;
         add.limb(off(knee, 0, 0.03, 0.006), between(knee, ankle, 0.6) + Vec3{0, 0, -0.004}, 0.058, 0.052);
         add.limb(between(knee, ankle, 0.4) + Vec3{0, 0, -0.008}, off(ankle, 0, 0.035, -0.008), 0.053, 0.047);
@@ -176,8 +174,8 @@ ImplicitShape mannequin_shape(const Landmarks& m) {
         add.blend = 0.006;
         add.blob(skull + mirrored(Vec3{0.029, -0.014, 0.074}, s), {0.013, 0.011, 0.012});  // lids
         add.level = 1;
-        add.blend = 0.008;
-        add.blob(skull + mirrored(Vec3{0.079, -0.026, -0.010}, s), {0.011, 0.027, 0.019}, 0.15);  // ears
+        add.blend = 0.013;
+        add.blob(skull + mirrored(Vec3{0.079, -0.028, -0.010}, s), {0.012, 0.026, 0.019}, 0.15);  // ears
     }
 
     // Arms.
@@ -204,17 +202,17 @@ ImplicitShape mannequin_shape(const Landmarks& m) {
         add.level = 2;
         for (std::size_t f = 1; f < 5; ++f) {
             add.blend = 0.012;
-            add.limb(between(wrist, fingers[f][0], 0.35), fingers[f][0], 0.012, 0.0112);
+            add.limb(between(wrist, fingers[f][0], 0.35), fingers[f][0], 0.012, 0.0105);
         }
-        static constexpr std::array<double, 5> kThickness{1.2, 1.0, 1.03, 0.97, 0.86};
+        static constexpr std::array<double, 5> kThickness{1.25, 1.0, 1.03, 0.98, 0.9};
         for (std::size_t f = 0; f < 5; ++f) {
             const auto& j = fingers[f];
-            const double r = 0.0088 * kThickness[f];
-            add.blend = f == 0 ? 0.016 : 0.004;
+            const double r = 0.0080 * kThickness[f];
+            add.blend = f == 0 ? 0.016 : 0.005;
             add.limb(j[0], j[1], f == 0 ? r * 1.6 : r * 1.04, r);
             add.blend = 0.003;
             add.limb(j[1], j[2], r, r * 0.92);
-            const double tip = 1 - 0.0066 / std::max(length(j[3] - j[2]), 1e-6);
+            const double tip = 1 - 0.0060 / std::max(length(j[3] - j[2]), 1e-6);
             add.limb(j[2], between(j[2], j[3], tip), r * 0.92, r * 0.76);
         }
     }
@@ -239,14 +237,9 @@ ContourGrid mannequin_grid(const Landmarks& m) {
         }
         return map;
     };
-    const AxisMap right = axis({{shoulder - 0.06, 1.0}, {elbow - 0.05, 1.9}, {elbow + 0.05, 1.1},
-                                {wrist - 0.03, 1.9}, {wrist + 0.02, 1.4}, {wrist + 0.3, 2.5}});
-    for (std::size_t i = right.lattice.size() - 1; i > 0; --i) {
-        grid.x.lattice.push_back(-right.lattice[i]);
-        grid.x.model_m.push_back(-right.model_m[i]);
-    }
-    grid.x.lattice.insert(grid.x.lattice.end(), right.lattice.begin(), right.lattice.end());
-    grid.x.model_m.insert(grid.x.model_m.end(), right.model_m.begin(), right.model_m.end());
+    grid.x = axis({{shoulder - 0.06, 1.0}, {elbow - 0.05, 1.9}, {elbow + 0.05, 1.1},
+                   {wrist - 0.03, 1.9}, {wrist + 0.02, 1.4}, {wrist + 0.3, 2.5}});
+    grid.x.odd = true;
     const double knee = m.knee[0].y, hip = m.hip[0].y, arm = m.shoulder[0].y;
     grid.y = axis({{0.10, 1.35}, {knee - 0.08, 1.9}, {knee + 0.08, 1.2}, {hip - 0.12, 1.9}, {hip + 0.05, 1.2},
                    {arm - 0.10, 1.6}, {2.0, 1.0}});
@@ -254,9 +247,9 @@ ContourGrid mannequin_grid(const Landmarks& m) {
         v -= 0.66;
     }
     grid.z = axis({{1.0, 1.0}});
-    grid.low = -0.768;
-    grid.size = 1.536;
-    grid.depth = 6;  // 24 mm
+    grid.low = -0.75;  // cells of 1.5 / 64 = 23 mm, exact in binary, so that left and right are alike to the last bit
+    grid.size = 1.5;
+    grid.depth = 6;
     return grid;
 }
 
@@ -274,7 +267,7 @@ double border(const Landmarks& m, int which, Vec3 p) {
         }
         case 2: {  // the neckline of the shirt: a widening tube about the neck
             const Vec3 from = p - (m.neck + Vec3{0, -0.030, 0.010});
-            return length({from.x, from.y * 0.5, from.z}) - 0.074 - std::max(0.0, from.y) * 0.6;
+            return length({from.x, from.y * 0.5, from.z < 0 ? 1.4 * from.z : from.z}) - 0.074 - std::max(0.0, from.y) * 0.6;
         }
         case 3: {  // sleeves: half way to the elbow
             const double cut = std::fabs(m.shoulder[0].x) + 0.52 * std::fabs(m.elbow[0].x - m.shoulder[0].x);
