@@ -12,6 +12,7 @@ std::vector<Command> all_commands() {
         run_command(),
         draw_command(),
         export_command(),
+        render_command(),
     };
 }
 

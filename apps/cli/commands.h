@@ -13,6 +13,7 @@ Command fmt_command();
 Command run_command();
 Command draw_command();
 Command export_command();
+Command render_command();
 
 // In the order of the help.
 std::vector<Command> all_commands();
