@@ -136,6 +136,21 @@ Curve1 minimum_jerk(Key1 from, const std::vector<Waypoint1>& inner, Key1 to) {
     return Curve1(std::move(keys));
 }
 
+// The third derivative at the start is linear in the acceleration there: two probes give its root.
+Curve1 minimum_jerk_free_start(Key1 from, const std::vector<Waypoint1>& inner, Key1 to) {
+    const double h = (inner.empty() ? to.t_s : inner.front().t_s) - from.t_s;
+    auto jerk = [&](double acceleration) {
+        Key1 start = from;
+        start.motion.acceleration = acceleration;
+        const Curve1 c = minimum_jerk(start, inner, to);
+        const Quintic piece = Quintic::between(c.keys()[0].motion, c.keys()[1].motion, h);
+        return 6 * piece.coefficient[3];
+    };
+    const double at_0 = jerk(0), at_1 = jerk(1);
+    from.motion.acceleration = at_0 / (at_0 - at_1);
+    return minimum_jerk(from, inner, to);
+}
+
 Motion3 Curve3::at(double t_s) const {
     const Motion1 a = x.at(t_s), b = y.at(t_s), c = z.at(t_s);
     return {{a.position, b.position, c.position},

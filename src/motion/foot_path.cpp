@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "foot_path.h"
 
+#include <utility>
+
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 
@@ -13,16 +15,25 @@ Quat foot_rotation(double yaw, double pitch) { return about_y(yaw) * about_x(-pi
 
 }  // namespace
 
-double floor_under(const figure::Figure& figure, const Controls& controls) {
-    double lowest = 1e300;
+double floor_under(const figure::Figure& figure, const MotionContext& context) {
+    double lowest = 1e300, speed = 0;
     for (int side = 0; side < 2; ++side) {
         const figure::Leg& leg = figure.legs[side];
-        const LegControl& c = controls.legs[side];
+        const LegControl& c = context.now.legs[side];
+        const ControlsRate::Leg& rate = context.rate.legs[side];
         const Transform foot{c.foot_rotation_world, c.ankle_world};
         const Transform toes = foot * Transform{about_x(-c.toe_bend_rad), leg.toes_foot};
-        lowest = std::fmin(lowest, std::fmin((foot * leg.heel_foot).y, (toes * leg.ball_toes).y));
+        for (const auto& [point, pivot] : {std::pair{foot * leg.heel_foot, leg.heel_foot},
+                                           std::pair{toes * leg.ball_toes, leg.toes_foot}}) {
+            if (point.y < lowest) {
+                lowest = point.y;
+                speed =
+                    length(rate.ankle_velocity_world +
+                           cross(rate.foot_angular_world, rotate(c.foot_rotation_world, pivot)));
+            }
+        }
     }
-    return lowest;
+    return speed < kContact_m_s ? lowest : 0;
 }
 
 FootState foot_state(const figure::Figure& figure, const MotionContext& context, Side side) {
@@ -36,7 +47,7 @@ FootState foot_state(const figure::Figure& figure, const MotionContext& context,
     const Vec3 axis = rotate(about_y(s.yaw.position), {1, 0, 0});
     s.pitch = {puppetri::asin(clamp(ahead.y, -1, 1)), -dot(rate.foot_angular_world, axis), 0};
     s.toe_bend = {c.toe_bend_rad, rate.toe_bend_rad_s, 0};
-    const double floor_y = floor_under(figure, context.now);
+    const double floor_y = floor_under(figure, context);
     const Transform foot{c.foot_rotation_world, c.ankle_world};
     const Vec3 w = rate.foot_angular_world;
     auto planted = [&](Vec3 point, double height) {
@@ -143,33 +154,82 @@ LegControl FootPath::at(double t_s) const {
     return leg;
 }
 
-Landing put_down(const figure::Figure& figure, Side side, const FootState& now, double floor_y) {
+namespace {
+
+// Where a foot in the air should land (ankle, flat).
+Vec3 landing_place(const figure::Figure& figure, const MotionContext& context, Side side,
+                   const FootState& now, double floor_y) {
+    const FootState beside = foot_state(figure, context, other(side));
+    const double heading = beside.planted ? beside.yaw.position : now.yaw.position;
+    const Quat world_from_way = about_y(heading), way_from_world = conjugate(world_from_way);
+    const Vec3 stop = rotate(way_from_world, context.now.pelvis.position_world +
+                                                 context.rate.pelvis_velocity_world * 0.22);
+    const double s = side == Side::kLeft ? 1 : -1, ahead_of_ankles = 0.012 * figure.height_m;
+    Vec3 goal{stop.x + s * figure.stance_half_width_m, 0, stop.z - ahead_of_ankles};
+    if (beside.planted) {
+        const Vec3 stands =
+            rotate(way_from_world, footprint_of(figure, other(side), beside).ankle_flat);
+        goal.x = stands.x + 2 * s * figure.stance_half_width_m;
+        goal.z =
+            stands.z + clamp(2 * (goal.z - stands.z), -0.35 * figure.leg_m, 0.55 * figure.leg_m);
+    }
+    goal = rotate(world_from_way, goal);
+    goal.y = floor_y + figure.ankle_height_m;
+    return goal;
+}
+
+}  // namespace
+
+Landing put_down(const figure::Figure& figure, const MotionContext& context, Side side) {
+    const FootState now = foot_state(figure, context, side);
+    const double floor_y = floor_under(figure, context);
     Landing landing;
     landing.path.set_body(figure, side);
     if (now.planted) {
         landing.print = footprint_of(figure, side, now);
         landing.path.stand(0, landing.print);
-        const bool rolls =
-            std::fabs(now.pitch.position) > 1e-9 || std::fabs(now.pitch.velocity) > 1e-9;
-        landing.path.set_pitch(rolls ? minimum_jerk({0, now.pitch}, {}, {kRollFlat_s, {}})
-                                     : Curve1());
+        if (std::fabs(now.pitch.position) > 1e-9 || std::fabs(now.pitch.velocity) > 1e-9) {
+            landing.flat_s = kRollFlat_s;
+            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {kRollFlat_s, {}}));
+        }
         return landing;
     }
-    const double t = kPutDown_s;
-    Vec3 goal = now.ankle.position + now.ankle.velocity * (t * 0.4);
-    goal.y = floor_y + figure.ankle_height_m;
-    const double yaw = now.yaw.position + now.yaw.velocity * (t * 0.3);
+    const double t = kPutDown_s, yaw = now.yaw.position + now.yaw.velocity * (t * 0.3);
+    const Vec3 goal = landing_place(figure, context, side, now, floor_y);
     landing.print = footprint_at(figure, side, goal, yaw);
-    landing.down_s = t;
+    landing.down_s = landing.flat_s = t;
+    const Curve1 pitch = minimum_jerk({0, now.pitch}, {}, {t, {}});
     const Vec3 p = now.ankle.position, v = now.ankle.velocity;
-    Curve3 ankle{minimum_jerk({0, {p.x, v.x, 0}}, {}, {t, {goal.x, 0, 0}}),
-                 minimum_jerk({0, {p.y, v.y, 0}}, {}, {t, {goal.y, 0, 0}}),
-                 minimum_jerk({0, {p.z, v.z, 0}}, {}, {t, {goal.z, 0, 0}})};
+    const double low = goal.y - figure.ankle_height_m + 0.012 +
+                       drop_below_ankle(figure, side, pitch.at(0.6 * t).position, 0);
+    Curve3 ankle{
+        minimum_jerk({0, {p.x, v.x, 0}}, {}, {t, {goal.x, 0, 0}}),
+        minimum_jerk({0, {p.y, v.y, 0}}, {{0.6 * t, std::fmax(low, lerp(p.y, goal.y, 0.75))}},
+                     {t, {goal.y, 0, 0}}),
+        minimum_jerk({0, {p.z, v.z, 0}}, {}, {t, {goal.z, 0, 0}})};
     landing.path.swing(0, {}, std::move(ankle), minimum_jerk({0, now.yaw}, {}, {t, {yaw, 0, 0}}),
                        minimum_jerk({0, now.toe_bend}, {}, {t, {}}));
     landing.path.stand(t, landing.print);
-    landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {t, {}}));
+    landing.path.set_pitch(pitch);
     return landing;
+}
+
+// With the highest reach h and a margin w the height y becomes y - d^2 / (4 w) for d = y - (h - w)
+// in [0, 2 w], which joins y below and h above with a continuous slope.
+void keep_reach(const figure::Figure& figure, Controls& c) {
+    constexpr double kReach = 0.9979;
+    for (int side = 0; side < 2; ++side) {
+        const Vec3 hip = rotate(c.pelvis.rotation_world, figure.legs[side].hip_pelvis);
+        const Vec3 d = c.pelvis.position_world + hip - c.legs[side].ankle_world;
+        const double r = kReach * figure.leg_m, w = 0.0004;
+        const double highest = c.legs[side].ankle_world.y - hip.y +
+                               std::sqrt(std::fmax(r * r - d.x * d.x - d.z * d.z, 0.04 * r * r));
+        const double over = c.pelvis.position_world.y - (highest - w);
+        if (over > 0) {
+            c.pelvis.position_world.y =
+                over < 2 * w ? c.pelvis.position_world.y - over * over / (4 * w) : highest;
+        }
+    }
 }
 
 }  // namespace puppetri::motion

@@ -69,16 +69,22 @@ class FootPath {
 double drop_below_ankle(const figure::Figure& figure, Side side, double pitch_rad,
                         double toe_bend_rad);
 
-// A path that puts the foot down where it is heading (or rolls it flat where it stands) and leaves
-// it there.
+// A path that puts the foot down (or rolls it flat where it stands) and leaves it there. A foot in
+// the air goes where it makes the figure stand: so that the pelvis, which needs a moment to stop,
+// comes to rest between the feet.
 struct Landing {
     FootPath path;
     Footprint print;
     double down_s = 0;  // when it stands; 0 when it already does
+    double flat_s = 0;  // when it has rolled flat
 };
-Landing put_down(const figure::Figure& figure, Side side, const FootState& now, double floor_y);
+Landing put_down(const figure::Figure& figure, const MotionContext& context, Side side);
 
-// The floor under the lower foot.
-double floor_under(const figure::Figure& figure, const Controls& controls);
+// Lowers the pelvis where a leg would not reach its foot; smooth, and nothing where the legs reach
+// easily.
+void keep_reach(const figure::Figure& figure, Controls& controls);
+
+// The height of the floor: that of the lower foot while it stands; 0 while the figure flies.
+double floor_under(const figure::Figure& figure, const MotionContext& context);
 
 }  // namespace puppetri::motion

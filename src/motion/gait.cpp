@@ -43,7 +43,7 @@ class Step final : public Movement {
         constexpr double h = 1e-4;
         const Controls own = own_at(0), later = own_at(h);
         const ControlsRate rate = rate_between(own, later, h);
-        const double blend_s = 0.8 * plan_.duration_s;
+        const double blend_s = std::fmax(0.8 * plan_.duration_s, 0.33);
         body_ = InertialBody(context.now.body, context.rate, own.body, rate, blend_s);
         ControlsRate turn_now, turn_own;
         turn_now.chest_angular_pelvis = context.rate.pelvis_angular_world;
@@ -72,7 +72,8 @@ class Step final : public Movement {
         }
         if (t_s > T && spec_.kind == StepKind::kLastHalf) {
             const double settled = smooth_rise(t_s - T, 0.8);
-            c.pelvis.position_world = lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
+            c.pelvis.position_world =
+                lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
             living_.add(t_s - T, smooth_rise(t_s - T, 1.5), c);
         }
         copy_limbs(limbs, c, out);
@@ -87,7 +88,7 @@ class Step final : public Movement {
         c.pelvis.rotation_world = heading * about_y(yaw) * about_z(list);
         const double ratio = clamp(t / plan_.duration_s, 0, 1);
         const double bump = 16 * ratio * ratio * (1 - ratio) * (1 - ratio);
-        const double lean = radians(2.5) + plan_.lean_rad * bump;
+        const double lean = radians(plan_.runs ? 7 : 2.5) + plan_.lean_rad * bump;
         // The chest turns against the pelvis and stays level.
         c.body.pelvis_from_chest = about_z(-1.2 * list) * about_y(-1.7 * yaw) * about_x(lean);
         const Quat path_from_chest = about_y(yaw) * about_z(list) * c.body.pelvis_from_chest;
@@ -107,11 +108,13 @@ class Step final : public Movement {
         const figure::Arm& body = figure_.arms[index_of(side)];
         const Vec3 shoulder = body.clavicle_chest + body.shoulder_clavicle;
         const double ahead = angle + radians(1.5);
-        const double bent = 0.25 * (angle + radians(20)) * (angle + radians(20));
+        // Runners bend their elbows by a right angle.
+        const double bent =
+            plan_.runs ? 0.27 : 0.12 * (angle + radians(20)) * (angle + radians(20));
         const Vec3 reach = (arm.chest_from_hand.translation - shoulder) * (1 - bent);
         arm.chest_from_hand.translation = shoulder + rotate(about_x(-ahead), reach);
-        arm.chest_from_hand.rotation =
-            about_x(-ahead - 0.35 * angle) * arm.chest_from_hand.rotation;
+        arm.chest_from_hand.rotation = about_x(-ahead - (plan_.runs ? radians(65) : 0.35 * angle)) *
+                                       arm.chest_from_hand.rotation;
         return arm;
     }
 

@@ -19,9 +19,10 @@ constexpr double kSwingKnee = radians(60);
 constexpr double kFlatAfterStrike = 0.17,
                  kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
 constexpr double kList = radians(2.5);
-constexpr double kSway_m = 0.0205;      // to either side, at any height
+constexpr double kSway_m = 0.0205;       // to either side, at any height
 constexpr double kBoundaryLead = 0.065;  // of the stroke
-constexpr double kRestLag = 0.01;       // of the stroke: what the living rest after the last step makes good
+constexpr double kRestLag =
+    0.01;  // of the stroke: what the living rest after the last step makes good
 constexpr double kClearance_m = 0.022;
 constexpr double kBrake = 6.0;      // at touch down, in units of way / time^2
 constexpr double kLeave = 3.0;      // after toe off, in the same units
@@ -29,6 +30,7 @@ constexpr double kSetDown_m = 1.6;  // the same upward, in m
 // Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
 // off (20), and the shortest of a leg that stands (24.4).
 constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9788;
+constexpr double kSlips = 0.9981;  // from here on a standing foot would leave its print
 
 class Planner {
  public:
@@ -63,7 +65,9 @@ class Planner {
         for (int round = 0; round < 4; ++round) {
             plan_swing_foot();
             plan_height_of_pelvis();
-            const double missing = kSwingKnee - swing_knee();
+            const double wanted =
+                lerp(radians(55), kSwingKnee, clamp((x_ / f_.leg_m - 0.35) / 0.3, 0, 1));
+            const double missing = wanted - swing_knee();
             if (std::fabs(missing) < radians(4)) {
                 break;
             }
@@ -86,7 +90,7 @@ class Planner {
 
     void plan_frame() {
         plan_.heading_rad = support_.yaw.position;
-        floor_y_ = floor_under(f_, context_.now);
+        floor_y_ = floor_under(f_, context_);
         support_print_ = footprint_of(f_, support_side_, support_);
         Vec3 origin = support_print_.ankle_flat;
         if (!support_.planted) {
@@ -141,7 +145,10 @@ class Planner {
         plan_.pelvis_yaw = minimum_jerk({0, before}, {}, {T, after});
         const double rate = side_ * kList * kPi / n_;
         plan_.pelvis_list = minimum_jerk({0, {0, first_ ? 0 : rate, 0}},
-                                         {{(first_ ? 0.6 : 0.5) * T, side_ * kList * (whole_ ? 1 : first_ ? 1.5 : 0.8)}},
+                                         {{(first_ ? 0.6 : 0.5) * T, side_ * kList *
+                                                                         (whole_   ? 1
+                                                                          : first_ ? 1.5
+                                                                                   : 0.8)}},
                                          {T, {0, last_ ? 0 : -rate, 0}});
         const double swing =
             clamp(radians(36) * x_ / (0.41 * f_.height_m), radians(5), radians(30)) * 0.75;
@@ -151,7 +158,8 @@ class Planner {
         plan_.lean_rad = first_ ? radians(4) : last_ ? radians(-3) : 0;
     }
 
-    bool rolls() const { return half_ > 0.02 * n_; }
+    // Above a duty factor of 0.5 the foot rolls from heel to toe; at 0.5 it just still does.
+    bool rolls() const { return half_ > -0.005 * n_; }
     // Heel off to toe off; the state at the border is where the next step takes it up.
     static Quintic heel_rise(double lift_pitch, double length_s) {
         return Quintic::between({}, {lift_pitch, 1.9 * lift_pitch / length_s, 0}, length_s);
@@ -187,9 +195,6 @@ class Planner {
     // is as long as the height wants that the front leg, bent by some 20 degrees, has.
     double lift_pitch(Side hind, const Footprint& hind_print, Vec3 front_ankle_path,
                       Vec3 pelvis_path, Quat turn) const {
-        if (std::fabs(half_) < 0.02 * n_) {
-            return 0;
-        }
         const double height =
             hips_height(other(hind), front_ankle_path, pelvis_path, turn, kPushing);
         return pitch_for(hind, hind_print, pelvis_path, turn, kPushing, height, radians(-8),
@@ -213,7 +218,14 @@ class Planner {
             const double begin = std::fmax(T - (first_ ? 0.6 : 1) * kHeelRise * n_, flat_s + 0.02);
             const double length_s = plan_.support_lift_s - begin;
             if (length_s > 0.03) {
-                const Vec3 front{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m, x_};
+                // The front foot may still be rolling down from its heel when this one leaves.
+                const double rolled = clamp(2 * half_ / (kFlatAfterStrike * n_), 0, 1);
+                const Vec3 flat{-side_ * 2 * f_.stance_half_width_m, f_.ankle_height_m, x_};
+                const Footprint landing = footprint_at(
+                    f_, spec_.transfer, plan_.world_from_path * flat, plan_.heading_rad);
+                const Motion1 front_pitch{radians(22) * (1 - rolled) * (1 - rolled), 0, 0};
+                const Vec3 front =
+                    to_path(ankle_on_print(f_, spec_.transfer, landing, front_pitch)).position;
                 const Motion3 end = plan_.pelvis_path.at(T);
                 const Quintic rise = heel_rise(
                     lift_pitch(support_side_, support_print_, front,
@@ -280,7 +292,8 @@ class Planner {
         // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
         // that all is smooth.
         const Footprint print = footprint_of(f_, side, swing_);
-        double lift_to = radians(-4);
+        const double early = plan_.lift_s / (0.049 * n_);
+        double lift_to = radians(-4) * early * early;
         if (!first_ && planted) {
             const Vec3 front =
                 path_from_world_ * plan_.feet[index_of(support_side_)].at(lift).ankle_world;
@@ -294,7 +307,8 @@ class Planner {
                 path_from_world_ * plan_.feet[index_of(support_side_)].at(strike).ankle_world;
             const double lowest =
                 hips_height(support_side_, back, pelvis, turn_at(strike), kShortest) + 0.004;
-            strike_to = last_ ? radians(5)
+            const double late = (plan_.duration_s - plan_.strike_s) / (0.049 * n_);
+            strike_to = last_ ? radians(5) * late * late
                               : pitch_for(side, landing, pelvis, turn_at(strike), kLanding, lowest,
                                           radians(18), radians(38));
         }
@@ -340,7 +354,8 @@ class Planner {
             (first_ ? 1.0 : 1) * kBrake * (to.position.z - from.position.z) / (d * d);
         to.acceleration.y += (first_ ? 0.8 : 1) * kSetDown_m / (d * d);
         if (planted && !first_) {
-            from.acceleration.z += kLeave * (to.position.z - from.position.z) / (d * d);
+            const double hurry = kLeave + 12 * std::fmax(0, x_ / f_.leg_m - 0.75);
+            from.acceleration.z += hurry * (to.position.z - from.position.z) / (d * d);
         }
         const Curve1 toes =
             minimum_jerk({lift, bend}, {{lift + 0.4 * d, radians(6)}}, {strike, {}});
@@ -365,11 +380,24 @@ class Planner {
         foot.stand(strike, landing);
     }
 
+    // Also a little past the end, where the pelvis goes on as it is.
+    Vec3 pelvis_at(double t) const {
+        const double T = plan_.duration_s;
+        const Motion3 end = plan_.pelvis_path.at(std::fmin(t, T));
+        if (t <= T) {
+            return end.position;
+        }
+        // It slows down from its speed at the border towards the mean.
+        Vec3 p = end.position + end.velocity * (t - T);
+        p.z -= 0.35 * (end.velocity.z - x_ / n_) * (t - T);
+        return p;
+    }
+
     // The band at t: standing legs between their shortest and longest reach, whatever the height of
     // the pelvis.
     HeightBand band(double t) const {
         const double middle = puppetri::sin(kPi * t / plan_.duration_s);
-        HeightBand b{t, -1e9, 1e9, whole_ ? 0.2 + 0.75 * middle * middle : 0.45};
+        HeightBand b{t, -1e9, 1e9, 1e9, whole_ ? 0.2 + 0.75 * middle * middle : 0.45};
         for (const Side side : {Side::kLeft, Side::kRight}) {
             const bool transfers = side == spec_.transfer;
             const bool stands = transfers
@@ -378,14 +406,14 @@ class Planner {
             const LegControl leg = plan_.feet[index_of(side)].at(t);
             const Vec3 ankle = path_from_world_ * leg.ankle_world;
             auto height = [&](double reach) {
-                return hips_height(side, ankle, plan_.pelvis_path.at(t).position, turn_at(t),
-                                   reach);
+                return hips_height(side, ankle, pelvis_at(t), turn_at(t), reach);
             };
-            const bool lands =
-                transfers && t > plan_.strike_s - 0.1 * n_ && t < plan_.strike_s + 0.03 * n_;
+            const bool lands = transfers && !last_ && t > plan_.strike_s - 0.1 * n_ &&
+                               t < plan_.strike_s + 0.03 * n_;
             b.highest = std::fmin(b.highest, height(lands ? kLanding : kLongest));
             if (stands) {
                 b.lowest = std::fmax(b.lowest, height(kShortest));
+                b.limit = std::fmin(b.limit, height(kSlips));
             }
         }
         return b;
@@ -432,6 +460,18 @@ class Planner {
         for (int i = 1; i <= kBands; ++i) {
             height.bands.push_back(band(T * i / kBands));
         }
+        for (const double t : {plan_.lift_s, plan_.strike_s}) {
+            if (t > 0 && t < T) {
+                height.bands.push_back(band(t));
+            }
+        }
+        // The double support goes on in the next step: what this one leaves has to suit both legs
+        // until the hind foot is off.
+        for (int i = 1; i <= 3 && !last_ && half_ > 0; ++i) {
+            height.bands.push_back(band(T + half_ * i / 3));
+            height.bands.back().lowest = -1e9;
+            height.bands.back().highest = height.bands.back().limit;
+        }
         plan_.pelvis_path.y = plan_height(height);
     }
 
@@ -450,7 +490,7 @@ class Planner {
 }  // namespace
 
 StepPlan plan_step(const MotionContext& context, const StepSpec& spec) {
-    return Planner(context, spec).plan();
+    return spec.duty_factor < 0.495 ? plan_run(context, spec) : Planner(context, spec).plan();
 }
 
 }  // namespace puppetri::motion

@@ -20,12 +20,14 @@ struct StepPlan {
     double support_strike_s = 0, support_lift_s = 0;
     std::array<FootPath, 2> feet;    // by Side
     Curve3 pelvis_path;              // the joint `hips`
-    Vec3 rest_path;          // where the pelvis comes to rest after the last half step
+    Vec3 rest_path;                  // where the pelvis comes to rest after the last half step
     Curve1 pelvis_yaw, pelvis_list;  // relative to the heading; list is about the way ahead
     Curve1 arm_swing;  // of the left shoulder, ahead is positive; the right arm's is the negative
+    bool runs = false;
     double lean_rad = 0;  // largest forward lean of the trunk during this step beyond the usual
 };
 
 StepPlan plan_step(const MotionContext& context, const StepSpec& spec);
+StepPlan plan_run(const MotionContext& context, const StepSpec& spec);  // below a duty factor of 0.5
 
 }  // namespace puppetri::motion

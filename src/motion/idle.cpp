@@ -121,6 +121,7 @@ class Idle final : public Movement {
             c.legs[i].swivel_rad = swivel_[i].at(t_s);
             arms_[i].apply(t_s, c.arms[i]);
         }
+        keep_reach(figure_, c);
         copy_limbs(limbs, c, out);
     }
 
@@ -132,9 +133,8 @@ class Idle final : public Movement {
     }
 
     void plan_feet(const MotionContext& context) {
-        const double floor_y = floor_under(figure_, context.now);
         for (const Side side : {Side::kLeft, Side::kRight}) {
-            Landing landing = put_down(figure_, side, foot_state(figure_, context, side), floor_y);
+            Landing landing = put_down(figure_, context, side);
             home_.legs[index_of(side)] =
                 LegControl{landing.print.ankle_flat, about_y(landing.print.yaw_rad), 0, 0};
             feet_[index_of(side)] = std::move(landing.path);

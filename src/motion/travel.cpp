@@ -125,20 +125,27 @@ Curve1 plan_height(const HeightPlan& plan) {
         basis[i] = curve(unit, {}, {});
     }
     const Curve1 fixed = curve({}, start, plan.to);
+    // Past the end the curve goes on as the polynomial of degree two.
+    auto at = [T](const Curve1& c, double t) {
+        const Motion1 m = c.at(std::fmin(t, T));
+        const double late = std::fmax(t - T, 0);
+        return Motion1{m.position + late * (m.velocity + late * m.acceleration / 2), 0,
+                       m.acceleration};
+    };
     std::vector<std::array<double, kUnknown>> value(samples), bend(samples);
     std::vector<double> value0(samples), bend0(samples);
     for (std::size_t s = 0; s < samples; ++s) {
-        const Motion1 m = fixed.at(plan.bands[s].t_s);
+        const Motion1 m = at(fixed, plan.bands[s].t_s);
         value0[s] = m.position;
         bend0[s] = m.acceleration;
         for (std::size_t i = 0; i < kUnknown; ++i) {
-            const Motion1 b = basis[i].at(plan.bands[s].t_s);
+            const Motion1 b = at(basis[i], plan.bands[s].t_s);
             value[s][i] = b.position;
             bend[s][i] = b.acceleration;
         }
     }
     const double pinned = plan.end_is_free ? 0 : 1e6;
-    for (int round = 0; round < 12; ++round) {
+    for (int round = 0; round < 14; ++round) {
         std::array<std::array<double, kUnknown>, kUnknown> rows{};
         std::array<double, kUnknown> right{};
         auto add = [&](const std::array<double, kUnknown>& row, double target, double weight) {
@@ -155,12 +162,19 @@ Curve1 plan_height(const HeightPlan& plan) {
                 now += value[s][i] * y[i];
             }
             const double lo = plan.bands[s].lowest - base, hi = plan.bands[s].highest - base;
-            // What is wanted pulls a little everywhere, so that the curve is determined.
-            add(value[s], lerp(lo, hi, plan.bands[s].wanted) - value0[s], 0.07);
+            if (plan.bands[s].t_s <= T) {
+                // What is wanted pulls a little everywhere, so that the curve is determined.
+                add(value[s], lerp(lo, hi, plan.bands[s].wanted) - value0[s], 0.07);
+                add(bend[s], -bend0[s], 4e-5 * T * T);
+            }
             if (round > 0 && (now > hi || now < lo)) {
                 add(value[s], (now > hi ? hi : lo) - value0[s], 40);
             }
-            add(bend[s], -bend0[s], 4e-5 * T * T);
+            // In the later rounds a leg that would be too short counts most.
+            const double limit = plan.bands[s].limit - base;
+            if (round > 5 && now > limit) {
+                add(value[s], limit - value0[s], 3000);
+            }
         }
         add({0, 0, 0, 1, 0}, plan.to.position - base, pinned);
         add({0, 0, 0, 0, 1}, 0, plan.end_is_free ? 1e-2 : 1e6);

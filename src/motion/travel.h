@@ -18,14 +18,15 @@ Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s);
 struct HeightBand {
     double t_s = 0;
     double lowest = 0, highest = 0;
+    double limit = 1e9;   // above it a foot would slip
     double wanted = 0.5;  // where in the band, 0 lowest, 1 highest
 };
 struct HeightPlan {
     Motion1 from;  // at 0
     double duration_s = 0;
-    bool end_is_free = false;  // otherwise `to` is met
-    Motion1 to;                // velocity and acceleration at the end count in any case
-    std::vector<HeightBand> bands;
+    bool end_is_free = false;       // otherwise `to` is met
+    Motion1 to;                     // velocity and acceleration at the end count in any case
+    std::vector<HeightBand> bands;  // may reach past the end: the curve goes on there as it is
 };
 // A smooth curve through the bands, as far as there is one: otherwise the sum of squares by which
 // it leaves them is least, leaving upwards (a leg too short) counting much more than downwards.

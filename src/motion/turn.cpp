@@ -73,6 +73,7 @@ class Turn final : public Movement {
         if (t_s > T_) {
             living_.add(t_s - T_, smooth_rise(t_s - T_, 1.5), c);
         }
+        keep_reach(figure_, c);
         copy_limbs(limbs, c, out);
     }
 
@@ -92,17 +93,17 @@ class Turn final : public Movement {
     }
 
     void plan_feet(const MotionContext& context) {
-        const double floor_y = floor_under(figure_, context.now);
+        const double floor_y = floor_under(figure_, context);
         std::array<Landing, 2> landing;
         std::array<Vec3, 2> ankle;
         std::array<double, 2> yaw{};
         double ready_s = 0;
         for (const Side side : {Side::kLeft, Side::kRight}) {
             const int i = index_of(side);
-            landing[i] = put_down(figure_, side, foot_state(figure_, context, side), floor_y);
+            landing[i] = put_down(figure_, context, side);
             ankle[i] = landing[i].print.ankle_flat;
             yaw[i] = landing[i].print.yaw_rad;
-            ready_s = std::fmax(ready_s, landing[i].down_s);
+            ready_s = std::fmax(ready_s, landing[i].flat_s);
         }
         centre_[0] = (ankle[0] + ankle[1]) * 0.5;
         const bool moves = std::fabs(angle_) >= kNoStep && ready_s < 0.5 * T_;
@@ -203,7 +204,7 @@ class Turn final : public Movement {
         constexpr int kBands = 16;
         for (int i = 1; i <= kBands; ++i) {
             const double t = T_ * i / kBands;
-            HeightBand band{t, 0, 1e9, 0.5};
+            HeightBand band{t, 0, 1e9, 1e9, 0.5};
             for (int side = 0; side < 2; ++side) {
                 const LegControl leg = feet_[side].at(t);
                 const Vec3 hip =

@@ -39,6 +39,7 @@ class Curve1 {
     explicit Curve1(std::vector<Key1> keys);
     Motion1 at(double t_s) const;
     bool empty() const { return keys_.empty(); }
+    const std::vector<Key1>& keys() const { return keys_; }
     double begin_s() const { return keys_.empty() ? 0 : keys_.front().t_s; }
     double end_s() const { return keys_.empty() ? 0 : keys_.back().t_s; }
 
@@ -55,6 +56,9 @@ struct Waypoint1 {
     double position = 0;
 };
 Curve1 minimum_jerk(Key1 from, const std::vector<Waypoint1>& inner, Key1 to);
+
+// The same with the acceleration at the start left free: it starts with zero third derivative.
+Curve1 minimum_jerk_free_start(Key1 from, const std::vector<Waypoint1>& inner, Key1 to);
 
 class Curve3 {
  public:

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// A counting allocator: after warm-up a pose costs no allocation.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include "puppetri/motion/gait.h"
+#include "puppetri/motion/idle.h"
+#include "puppetri/motion/solve_controls.h"
+#include "puppetri/motion/turn.h"
+
+namespace {
+long allocations = 0;
+}
+
+// NOLINTBEGIN: the replaceable global functions
+void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* p = std::malloc(size ? size : 1)) {
+        return p;
+    }
+    std::abort();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+// NOLINTEND
+
+using namespace puppetri;
+using namespace puppetri::motion;
+
+TEST_CASE("sampling a movement and solving its pose allocate nothing after warm-up [alloc]") {
+    const figure::Figure f = figure::make_mannequin(1.75);
+    const MotionContext context{
+        .figure = f, .now = standing(f, {}, 0), .rate = {}, .at = {}, .seed = 3};
+    const MovementPtr movements[] = {make_step(context, {.kind = StepKind::kFirstHalf}),
+                                     make_idle(context, {}),
+                                     make_turn(context, {.heading_rad = 1})};
+    figure::Pose pose;
+    Controls controls = context.now;
+    solve_controls(f, controls, pose);
+    for (const MovementPtr& movement : movements) {
+        const long before = allocations;
+        for (int i = 0; i < 500; ++i) {
+            movement->sample(i * 0.002, controls);
+            solve_controls(f, controls, pose);
+        }
+        CHECK(allocations == before);
+    }
+}
+
+TEST_CASE("cost of a pose and of preparing a step [skip]" * doctest::skip()) {
+    const figure::Figure f = figure::make_mannequin(1.75);
+    const MotionContext context{
+        .figure = f, .now = standing(f, {}, 0), .rate = {}, .at = {}, .seed = 3};
+    const MovementPtr step = make_step(context, {.kind = StepKind::kFirstHalf});
+    figure::Pose pose;
+    Controls controls = context.now;
+    using Clock = std::chrono::steady_clock;
+    auto us = [](Clock::time_point a, Clock::time_point b, int n) {
+        return std::chrono::duration<double, std::micro>(b - a).count() / n;
+    };
+    const auto t0 = Clock::now();
+    for (int i = 0; i < 20000; ++i)
+        step->sample(i * 2e-5, controls);
+    const auto t1 = Clock::now();
+    for (int i = 0; i < 20000; ++i)
+        solve_controls(f, controls, pose);
+    const auto t2 = Clock::now();
+    for (int i = 0; i < 200; ++i)
+        make_step(context, {.kind = StepKind::kFirstHalf});
+    const auto t3 = Clock::now();
+    std::printf("sample %.2f us, solve %.2f us, prepare %.0f us\n", us(t0, t1, 20000),
+                us(t1, t2, 20000), us(t2, t3, 200));
+}
