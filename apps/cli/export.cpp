@@ -275,8 +275,8 @@ int run(const Arguments& arguments) {
         if (!status) {
             say_diagnostics(status.error());
             const std::string& code = status.error().front().code;
-            return code == "bad-range" || code == "bad-rate" || code == "no-period" ? kBadInput
-                                                                                    : kFailed;
+            const bool disk = code == "cannot-write" || code == "disk-full";
+            return disk ? kFailed : kBadInput;
         }
     }
     tell(written, scene, staged->performed, arguments.given("--json"));

@@ -107,7 +107,7 @@ struct Take {
 // Samples the performance. Needs the performance to outlive the take.
 // Fails   "bad-range": frames that the performance does not have, or negative handles; "no-period":
 // nothing repeats;
-//         "bad-rate": outside 23.976 to 120.
+//         "bad-rate": outside 23.976 to 120; "nothing-to-show": neither figures nor props.
 // Cost    one pose per key and actor.
 Checked<Take> sample_take(const stage::Performance& performance, const TakeOptions& options);
 
