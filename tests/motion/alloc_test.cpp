@@ -4,29 +4,12 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <new>
 
 #include "puppetri/motion/gait.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/solve_controls.h"
 #include "puppetri/motion/turn.h"
-
-namespace {
-long allocations = 0;
-}
-
-// NOLINTBEGIN: the replaceable global functions
-void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* p = std::malloc(size ? size : 1)) {
-        return p;
-    }
-    std::abort();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-// NOLINTEND
+#include "support/count_allocations.h"
 
 using namespace puppetri;
 using namespace puppetri::motion;
@@ -42,12 +25,12 @@ TEST_CASE("sampling a movement and solving its pose allocate nothing after warm-
     Controls controls = context.now;
     solve_controls(f, controls, pose);
     for (const MovementPtr& movement : movements) {
-        const long before = allocations;
+        const auto before = test::allocations();
         for (int i = 0; i < 500; ++i) {
             movement->sample(i * 0.002, controls);
             solve_controls(f, controls, pose);
         }
-        CHECK(allocations == before);
+        CHECK(test::allocations() == before);
     }
 }
 

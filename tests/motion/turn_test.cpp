@@ -80,6 +80,7 @@ TEST_CASE(
 TEST_CASE("a half turn takes two pairs of steps and ends facing the other way [unit]") {
     const figure::Figure f = figure::make_mannequin(1.75);
     Chain chain(f, standing(f, {}, 0));
+    chain.run({make_idle(chain.context(), {})}, 0.5);
     chain.run(
         {make_turn(chain.context(), {.heading_rad = kPi, .duration_s = turn_duration_s(kPi)})},
         1.5);
