@@ -81,9 +81,12 @@ class Planner {
         const double T = plan_.duration_s;
         half_ = (clamp(spec_.duty_factor, 0.2, 0.9) - 0.5) *
                 n_;  // half of the double support; negative: of the flight
+        // Half steps leave and reach rest, where both feet stand anyway: whatever the duty factor, they keep their swing
+        // from becoming a kick, and use a frame of their ends too.
         const double shift = std::fmin(0.049 * n_, std::fmax(half_, 0) * 0.5);
-        plan_.lift_s = first_ ? shift : last_ ? half_ - shift : half_;
-        plan_.strike_s = last_ ? T - shift : first_ ? T - half_ + shift : T - half_;
+        const double half = std::fmin(half_, 0.14 * n_);
+        plan_.lift_s = first_ ? shift : last_ ? half - shift : half_;
+        plan_.strike_s = last_ ? T - shift : first_ ? T - half + shift : T - half_;
         plan_.support_strike_s = first_ ? -1 : -half_;
         plan_.support_lift_s = last_ ? T + 10 : T + half_;
     }
