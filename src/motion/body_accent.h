@@ -14,7 +14,8 @@ struct BodyAccent {
     Curve1 lift_m;              // of the pelvis; negative bends the knees
     Curve1 ahead_m;             // of the pelvis
     Curve1 pitch_rad;           // of the pelvis about the axis to the left; positive bows
-    Curve1 lean_rad;            // of the trunk against the pelvis; positive bends forward
+    Curve1 twist_rad;  // of the trunk about the spine; positive turns the chest to the left
+    Curve1 lean_rad;   // of the trunk against the pelvis; positive bends forward
 
     void apply(double t_s, Controls& out) const {
         const Vec3 left = cross(Vec3{0, 1, 0}, ahead_world);
@@ -24,7 +25,8 @@ struct BodyAccent {
         out.pelvis.rotation_world = normalized(from_axis_angle(left, pitch_rad.at(t_s).position) *
                                                out.pelvis.rotation_world);
         const double lean = lean_rad.at(t_s).position;
-        out.body.pelvis_from_chest = normalized(about_x(lean) * out.body.pelvis_from_chest);
+        out.body.pelvis_from_chest = normalized(about_y(twist_rad.at(t_s).position) *
+                                                about_x(lean) * out.body.pelvis_from_chest);
         // The head keeps looking ahead.
         out.body.chest_from_head = normalized(about_x(-0.8 * (lean + pitch_rad.at(t_s).position)) *
                                               out.body.chest_from_head);

@@ -12,7 +12,7 @@ namespace {
 
 // How far the palms are below the ball's equator: enough to carry and to scoop, not so much that
 // the hands meet.
-constexpr double kUnder_rad = 0.65;
+constexpr double kUnder_rad = 0.5;
 constexpr double kElbowOut_rad = -0.2;
 
 double sign(Side side) { return side == Side::kLeft ? 1 : -1; }

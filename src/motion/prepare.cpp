@@ -255,7 +255,7 @@ void Preparer::throw_ball() {
         note("not-held", "it throws what its hands do not hold",
              "let it catch or carry the prop first");
     }
-    if (std::fabs(aside_rad(context_.now, target)) > kMostAside_rad) {
+    if (std::fabs(aside_rad(context_.figure, context_.now, target)) > kMostAside_rad) {
         note("not-facing", "it throws without facing the target", "let it face the target first");
     }
     result_.movement = make_throw(

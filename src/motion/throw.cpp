@@ -73,12 +73,12 @@ class Throw final : public Movement {
     void plan_body(const MotionContext& context) {
         Controls now = context.now;
         // A target behind the back cannot be thrown at: the throw then goes as far aside as it can.
-        const double aside = aside_rad(now, target_),
+        const double aside = aside_rad(figure_, now, target_),
                      turn = aside - clamp(aside, -kMostAside_rad, kMostAside_rad);
         const Vec3 centre = now.pelvis.position_world;
         target_ = centre + rotate(about_y(turn), target_ - centre);
         const Vec3 way = target_ - centre;
-        const Vec3 facing = rotate(now.pelvis.rotation_world, {0, 0, 1});
+        const Vec3 facing = rotate(pelvis_over_feet(figure_, now).rotation_world, {0, 0, 1});
         accent_.ahead_world =
             normalized(Vec3{way.x, 0, way.z}, normalized(Vec3{facing.x, 0, facing.z}, {0, 0, 1}));
         const double h = figure_.height_m, r = release_s_;
@@ -96,6 +96,9 @@ class Throw final : public Movement {
             Curve1({{0, {}}, {low_s_, {0.24, 0, 0}}, {r, {0.02, -0.3 * back, 0}}, {end, {}}});
         accent_.lean_rad =
             Curve1({{0, {}}, {low_s_, {0.42, 0, 0}}, {r, {0.06, -0.7 * back, 0}}, {end, {}}});
+        const double twist =
+            -clamp(aside, -kMostAside_rad, kMostAside_rad);  // the shoulders face the target
+        accent_.twist_rad = through_rests({{0, 0}, {low_s_, twist}, {r, twist}, {end, 0}});
         // Aim from where the shoulders will be.
         Controls then = context.now;
         body(r, then);
@@ -259,9 +262,9 @@ class Throw final : public Movement {
 
 }  // namespace
 
-double aside_rad(const Controls& controls, Vec3 target_world) {
+double aside_rad(const figure::Figure& figure, const Controls& controls, Vec3 target_world) {
     return turn_between(heading_of(target_world - controls.pelvis.position_world),
-                        heading_of(controls.pelvis.rotation_world));
+                        heading_of(pelvis_over_feet(figure, controls).rotation_world));
 }
 
 MovementPtr make_throw(const MotionContext& context, const ThrowSpec& spec) {

@@ -4,7 +4,7 @@
 
 #include "elaboration.h"
 #include "puppetri/base/elementary.h"
-#include "puppetri/lang/units.h"
+#include "puppetri/lang/types.h"
 
 namespace puppetri::scene {
 

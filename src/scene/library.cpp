@@ -2,8 +2,7 @@
 #include "library.h"
 
 #include "puppetri/lang/parse.h"
-#include "puppetri/lang/signature.h"
-#include "puppetri/lang/units.h"
+#include "puppetri/lang/types.h"
 
 namespace puppetri::scene {
 namespace {

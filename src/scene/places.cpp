@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Places: durations, disciplines, tokens, the movement they do, the net they run, the place they are.
 #include "elaboration.h"
-#include "puppetri/lang/units.h"
+#include "puppetri/lang/types.h"
 
 namespace puppetri::scene {
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Telling defects: each once, however many instances of a net show it.
 #include "elaboration.h"
-#include "puppetri/lang/signature.h"
-#include "puppetri/lang/units.h"
+#include "puppetri/lang/types.h"
 
 namespace puppetri::scene {
 

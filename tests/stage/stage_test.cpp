@@ -127,7 +127,6 @@ TEST_CASE("a throw that is cut keeps the ball and goes on from its pose [law]") 
         CHECK(p->holder({0}, ms(3999)) == "ana.hands");
         CHECK(p->score()[1].end == ms(600 + cut_ms));
         const Sanity s = inspect(*p, two_players());
-        INFO(told("off", s.off_m, *p));
         CHECK(s.finite);
         CHECK(s.off_m.value < 0.001);
         CHECK(s.excess_rad.value < 1e-6);
@@ -262,4 +261,77 @@ TEST_CASE("events of a movement are raised at their absolute time [unit]") {
     REQUIRE(raised.size() == 1);
     CHECK(raised[0].at == ms(250) + lasts);
     CHECK(raised[0].event == net::EventIndex{5});
+}
+
+TEST_CASE(
+    "random movements, ended or cut at random times, never break a figure or lose the ball [law]") {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        CAPTURE(seed);
+        Hand hand(two_players());
+        std::vector<std::uint32_t> actions[2];
+        for (std::uint32_t i = 0; i < 2; ++i) {
+            const ActorIndex other{1 - i};
+            const motion::BoundCall calls[] = {
+                C::with(C::actor("face", i), "toward", other),
+                C::carrying(C::with(C::actor("face", i), "toward", SetIndex{0}), 0),
+                C::with(C::with(C::actor("ready", i), "ball", PropIndex{0}), "from", other),
+                C::actor("idle", i),
+                C::with(C::actor("turn", i), "by", -1.0),
+                C::with(C::actor("half_step", i), "side", motion::Side::kLeft),
+                C::with(C::actor("step", i), "side", motion::Side::kRight),
+                C::carrying(C::with(C::actor("walk", i), "steps", std::int64_t{2}), 0),
+                C::with(C::actor("reach", i), "to", other),
+                C::with(C::actor("carry", i), "ball", PropIndex{0}),
+                C::with(C::with(C::actor("throw", i), "ball", PropIndex{0}), "to", other),
+                C::limb("swing_forward", i, motion::Limb::kLeftArm),
+                C::limb("swing_backward", i, motion::Limb::kRightArm),
+            };
+            for (const motion::BoundCall& call : calls) {
+                actions[i].push_back(hand.add("place", call));
+            }
+        }
+        hand.open();
+        RandomStream random{stream_key(seed, "stage_test", "interleaving")};
+        Hand::Token running[2];
+        SimTime until[2];
+        bool busy[2] = {false, false}, cuts[2] = {false, false};
+        SimTime now;
+        for (int n = 0; n < 24; ++n) {
+            const int who = !busy[0] ? 0 : !busy[1] ? 1 : until[0] <= until[1] ? 0 : 1;
+            if (busy[who]) {
+                now = std::max(now, until[who]);
+                if (cuts[who]) {
+                    hand.cut(running[who], now);
+                } else {
+                    hand.end(running[who], now);
+                }
+                busy[who] = false;
+                if (random.uniform() < 0.3) {
+                    now = now + ms(1 + static_cast<std::int64_t>(
+                                           random.uniform() * 200));  // nobody moves it for a while
+                }
+            }
+            const auto choice = static_cast<std::size_t>(random.uniform() *
+                                                         static_cast<double>(actions[who].size()));
+            running[who] = hand.begin(actions[who][choice], now);
+            REQUIRE(running[who].ready >= now);
+            cuts[who] = random.uniform() < 0.4;
+            const double part = cuts[who] ? random.uniform() : 1 + 0.2 * random.uniform();
+            until[who] = now + SimTime{static_cast<std::int64_t>(
+                                   part * static_cast<double>((running[who].ready - now).ticks))};
+            busy[who] = true;
+        }
+        const auto p = hand.stage().finish(now + ms(1500));
+        const Sanity s = inspect(*p, two_players());
+        INFO(told("off", s.off_m, *p)
+             << told("fast", s.fastest_m_s, *p) << told("deep", s.depth_m, *p));
+        CHECK(s.finite);
+        CHECK(s.one_holder);
+        CHECK(s.off_m.value < 0.001);
+        CHECK(s.excess_rad.value < 1e-6);
+        CHECK(s.fastest_m_s.value < 30);
+        CHECK(
+            s.depth_m.value <
+            0.08);  // strides cut and begun anew within 0.1 s take the hips below what ankles bend
+    }
 }

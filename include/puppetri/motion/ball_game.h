@@ -25,10 +25,10 @@ struct ThrowSpec {
 // straightens.
 MovementPtr make_throw(const MotionContext& context, const ThrowSpec& spec);
 
-// How far the figure looks past the target, to its left positive; a throw goes at most
+// By how much the feet point past the target, to its left positive; a throw goes at most
 // kMostAside_rad aside.
-double aside_rad(const Controls& controls, Vec3 target_world);
-inline constexpr double kMostAside_rad = 0.5;
+double aside_rad(const figure::Figure& figure, const Controls& controls, Vec3 target_world);
+inline constexpr double kMostAside_rad = 0.45;
 
 struct ReadySpec {
     double radius_m = 0.11;
