@@ -523,11 +523,15 @@ class Compiler {
         return any;
     }
 
-    // How often a multi-server transition is enabled: the least of ready / weight over its inputs.
+    // How often a multi-server transition is enabled: the least of tokens / weight over its inputs, ready ones or,
+    // for `now`, all.
     static void layout_degree(const std::map<std::uint32_t, Demand>& demands, Special& special) {
         for (const auto& [p, d] : demands) {
-            if (d.take + d.now > 0) {
-                special.degree.push_back({p, static_cast<std::uint32_t>(d.take + d.now)});
+            if (d.take > 0) {
+                special.degree.push_back({p, static_cast<std::uint32_t>(d.take)});
+            }
+            if (d.now > 0) {
+                special.degree_now.push_back({p, static_cast<std::uint32_t>(d.take + d.now)});
             }
         }
     }
@@ -553,8 +557,10 @@ class Compiler {
                 places.push_back(arc.place.value);
             }
         }
-        for (const Weighted& w : special.degree) {
-            places.push_back(w.place);
+        for (const auto* degree : {&special.degree, &special.degree_now}) {
+            for (const Weighted& w : *degree) {
+                places.push_back(w.place);
+            }
         }
         const auto add = [t](std::vector<std::uint32_t>& from, std::vector<Entry>& to) {
             std::sort(from.begin(), from.end());

@@ -54,7 +54,10 @@ std::uint32_t Engine::degree(const Special& s) const {
     for (const Weighted& w : s.degree) {
         least = std::min(least, state_.counts[w.place].ready / w.weight);
     }
-    return s.degree.empty() ? 1 : least;
+    for (const Weighted& w : s.degree_now) {
+        least = std::min(least, state_.counts[w.place].total / w.weight);
+    }
+    return least == kNoIndex ? 1 : least;
 }
 
 bool Engine::offered_to(const Special& s) const {
@@ -90,7 +93,8 @@ void Engine::look_again(bool intermediate) {
         if (intermediate) {
             if (!yes) {
                 gate_closed(t);
-            } else if (marked_[number] != 0 && s.delay != kNoIndex && !s.degree.empty()) {
+            } else if (marked_[number] != 0 && s.delay != kNoIndex &&
+                       !(s.degree.empty() && s.degree_now.empty())) {
                 set_clocks(s.delay, std::min(degree(s), running_clocks(s.delay)));
             }
             continue;

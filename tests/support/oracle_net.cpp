@@ -462,7 +462,8 @@ class Interpreter {
         if (!net_.transitions[t].delay) {
             return true;
         }
-        return clocks_[t].due && *clocks_[t].due <= now_;
+        return std::any_of(clocks_[t].due.begin(), clocks_[t].due.end(),
+                           [&](std::int64_t at) { return at <= now_; });
     }
     bool offered_to(std::uint32_t t) const {
         const auto& events = net_.transitions[t].events;
@@ -552,48 +553,82 @@ class Interpreter {
     }
 
     // ---- delays ----
-    struct Clock {
-        std::optional<std::int64_t> due;   // running, or run out
-        std::optional<std::int64_t> left;  // of `age`: what was left when it was interrupted
+    struct Clocks {
+        std::vector<std::int64_t> due;  // running or run out, in the order of their starts
+        std::optional<std::int64_t>
+            left;  // of `age` (single server): what was left when interrupted
     };
+    // How many times t could fire side by side with itself, at most once per server: by the tokens
+    // that it takes.
+    std::uint32_t servers_busy(std::uint32_t t) const {
+        const TransitionDraft& transition = net_.transitions[t];
+        if (!marked(t)) {
+            return 0;
+        }
+        if (transition.delay->servers == 1) {
+            return 1;
+        }
+        std::map<std::uint32_t, std::int64_t> ready_needed;
+        std::map<std::uint32_t, std::int64_t> needed;
+        for (const ArcDraft& arc : transition.inputs) {
+            if (arc.kind == ArcKind::kTake) {
+                ready_needed[arc.place.value] += arc.weight;
+            }
+            if (arc.kind == ArcKind::kTake || arc.kind == ArcKind::kTakeNow) {
+                needed[arc.place.value] += arc.weight;
+            }
+        }
+        std::int64_t times = transition.delay->servers;
+        for (const auto& [p, weight] : ready_needed) {
+            times = std::min<std::int64_t>(times, ready_count(places_[p]) / weight);
+        }
+        for (const auto& [p, weight] : needed) {
+            times = std::min<std::int64_t>(times,
+                                           static_cast<std::int64_t>(places_[p].size()) / weight);
+        }
+        return static_cast<std::uint32_t>(needed.empty() ? 1 : times);
+    }
+    // In the intermediate marking: clocks for which there is nothing stop, the youngest first.
     void restart_if_lost(std::uint32_t t, std::uint32_t fired) {
         if (!net_.transitions[t].delay) {
             return;
         }
-        Clock& clock = clocks_[t];
+        Clocks& clocks = clocks_[t];
+        if (t == fired) {  // the one that ran out
+            clocks.due.erase(std::find_if(clocks.due.begin(), clocks.due.end(),
+                                          [&](std::int64_t at) { return at <= now_; }));
+        }
         switch (net_.transitions[t].delay->memory) {
             case DelayMemory::kEnabling:
-                if (t == fired || !marked(t)) {
-                    clock = {};
-                }
+                clocks.due.resize(std::min<std::size_t>(clocks.due.size(), servers_busy(t)));
                 break;
             case DelayMemory::kAge:
-                if (t == fired) {
-                    clock = {};
-                }
                 break;
             case DelayMemory::kResample:
-                clock = {};
+                clocks.due.clear();
                 break;
         }
     }
-    // After anything has changed: who is marked has a running clock, who is not has none.
+    // After anything has changed: as many clocks run as there are servers busy.
     void start_clocks() {
         for (std::uint32_t t = 0; t < clocks_.size(); ++t) {
             if (!net_.transitions[t].delay) {
                 continue;
             }
-            Clock& clock = clocks_[t];
-            if (!marked(t)) {
-                if (clock.due && net_.transitions[t].delay->memory == DelayMemory::kAge) {
-                    clock.left = std::max<std::int64_t>(0, *clock.due - now_);
+            Clocks& clocks = clocks_[t];
+            const std::uint32_t wanted = servers_busy(t);
+            while (clocks.due.size() > wanted) {
+                if (net_.transitions[t].delay->memory == DelayMemory::kAge) {
+                    clocks.left = std::max<std::int64_t>(0, clocks.due.back() - now_);
                 }
-                clock.due.reset();
-            } else if (!clock.due) {
-                clock.due = now_ + (clock.left ? *clock.left
-                                               : duration(net_.transitions[t].delay->duration, {},
-                                                          nullptr));
-                clock.left.reset();
+                clocks.due.pop_back();
+            }
+            while (clocks.due.size() < wanted) {
+                const std::int64_t lasts =
+                    clocks.left ? *clocks.left
+                                : duration(net_.transitions[t].delay->duration, {}, nullptr);
+                clocks.left.reset();
+                clocks.due.push_back(now_ + lasts);
             }
         }
     }
@@ -640,9 +675,9 @@ class Interpreter {
                 consider(token.ready);
             }
         }
-        for (const Clock& clock : clocks_) {
-            if (clock.due) {
-                consider(*clock.due);
+        for (const Clocks& clocks : clocks_) {
+            for (const std::int64_t at : clocks.due) {
+                consider(at);
             }
         }
         for (const std::int64_t at : next_scheduled_) {
@@ -668,7 +703,7 @@ class Interpreter {
     std::int64_t next_beat_ = 0;
     std::vector<std::vector<Token>> places_;
     std::vector<Value> data_;
-    std::vector<Clock> clocks_;
+    std::vector<Clocks> clocks_;
     std::deque<EventIndex> pending_;
     std::optional<Occurrence> offered_;
     std::vector<std::int64_t> next_scheduled_;
@@ -696,6 +731,48 @@ OracleRun oracle_notation(
         text += " " + draft.data[d].path + "=" + std::to_string(data[d]);
     }
     return text;
+}
+
+// Holding times: `t for d` is t.begin -> t.busy (d) -> t.end, where busy carries the variables on.
+net::NetDraft without_holdings(net::NetDraft draft) {
+    const std::size_t count = draft.transitions.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!draft.transitions[i].holding) {
+            continue;
+        }
+        TransitionDraft t = draft.transitions[i];
+        PlaceDraft busy;
+        busy.path = t.path + ".busy";
+        busy.duration = t.holding;
+        TransitionDraft begin = t;
+        begin.path = t.path + ".begin";
+        begin.holding.reset();
+        begin.outputs.clear();
+        begin.assignments.clear();
+        begin.raises.clear();
+        TransitionDraft end;
+        end.path = t.path + ".end";
+        end.priority = t.priority;
+        end.variables = t.variables;
+        end.outputs = t.outputs;
+        end.assignments = t.assignments;
+        end.raises = t.raises;
+        OutputDraft in;
+        in.place = PlaceIndex{static_cast<std::uint32_t>(draft.places.size())};
+        ArcDraft out;
+        out.place = in.place;
+        for (std::uint32_t v = 0; v < t.variables.size(); ++v) {
+            busy.attributes.push_back({t.variables[v].name, t.variables[v].type});
+            in.attributes.push_back(Expr::slot(slot(SlotKind::kVariable, v), t.variables[v].type));
+            out.pattern.push_back({.attribute = v, .binds = v, .equals = {}});
+        }
+        begin.outputs.push_back(in);
+        end.inputs.push_back(out);
+        draft.transitions[i] = begin;
+        draft.transitions.push_back(end);
+        draft.places.push_back(busy);
+    }
+    return draft;
 }
 
 std::optional<std::set<OracleRun>> oracle_runs(const net::NetDraft& draft,

@@ -28,6 +28,10 @@ struct OracleFiring {
     bool operator==(const OracleFiring&) const = default;
 };
 
+// The draft with every holding time written out as begin, busy and end. The functions below need a
+// draft without them.
+net::NetDraft without_holdings(net::NetDraft draft);
+
 // One run as text: every firing as "tick:path;", then how it ended and the last marking:
 //   "0:a;20:b;|dead P=1/1 Q=2/0 x=3"     P=tokens/ready ones; ends: limit, dead, fault
 using OracleRun = std::string;

@@ -17,10 +17,10 @@ Expr units(std::int64_t n) { return Expr::time({n * kRandomNetUnit}); }
 class Generator {
  public:
     Generator(RandomStream& stream, const Features& allowed) : stream_(stream), has_(allowed) {
-        for (bool* feature :
-             {&has_.timed, &has_.intervals, &has_.delays, &has_.inhibitors, &has_.reads,
-              &has_.priorities, &has_.cuts, &has_.data, &has_.records, &has_.any, &has_.capacities,
-              &has_.events, &has_.siblings, &has_.odds, &has_.weights}) {
+        for (bool* feature : {&has_.timed, &has_.intervals, &has_.delays, &has_.inhibitors,
+                              &has_.reads, &has_.priorities, &has_.cuts, &has_.data, &has_.records,
+                              &has_.any, &has_.capacities, &has_.events, &has_.siblings, &has_.odds,
+                              &has_.weights, &has_.servers, &has_.holdings, &has_.expressions}) {
             *feature = *feature && chance(50);
         }
     }
@@ -138,6 +138,17 @@ class Generator {
         }
         if (has_.records && chance(25)) {
             p.keeps_order = true;
+        }
+        if (has_.expressions && p.duration && p.duration->kind == DurationKind::kConstant &&
+            chance(50) && (has_.data || !p.attributes.empty())) {
+            // n units, n from the token or the datum
+            const Expr n = !p.attributes.empty() && chance(60)
+                               ? Expr::slot(slot(SlotKind::kAttribute, 0), {ValueKind::kInt, 0})
+                           : has_.data
+                               ? Expr::slot(slot(SlotKind::kDatum, 0), {ValueKind::kInt, 0})
+                               : Expr::slot(slot(SlotKind::kAttribute, 0), {ValueKind::kInt, 0});
+            p.duration->kind = DurationKind::kExpression;
+            p.duration->a = must(Expr::binary(ExprOp::kMultiply, n, units(1)));
         }
         const bool as = p.duration && p.duration->kind == DurationKind::kAs;
         const std::size_t groups = as ? 0 : stream_.below(3);
@@ -343,7 +354,20 @@ class Generator {
             const DelayMemory memories[] = {DelayMemory::kEnabling, DelayMemory::kEnabling,
                                             DelayMemory::kAge, DelayMemory::kResample};
             delay.memory = memories[stream_.below(4)];
+            const bool plain =
+                std::all_of(t.inputs.begin(), t.inputs.end(), [&](const ArcDraft& a) {
+                    return a.pattern.empty() &&
+                           (a.kind != ArcKind::kTakeAll && a.kind != ArcKind::kTakeAllNow);
+                });
+            if (has_.servers && plain && delay.memory != DelayMemory::kAge && chance(60)) {
+                delay.servers = chance(50) ? 2 : DelayDraft::kInfiniteServers;
+            }
             t.delay = delay;
+        }
+        const bool lasts = std::any_of(t.outputs.begin(), t.outputs.end(),
+                                       [](const OutputDraft& o) { return o.lasts.has_value(); });
+        if (has_.holdings && has_.timed && !lasts && chance(30)) {
+            t.holding = random_duration();
         }
         if (has_.events && chance(40)) {
             t.events.push_back(
@@ -398,25 +422,6 @@ std::vector<T> permuted(const std::vector<T>& items, const std::vector<std::uint
     return out;
 }
 
-std::string show_duration(const DurationDraft& d) {
-    const auto unit = [](const Expr& e) {
-        return e.is_literal() ? std::to_string(e.literal_value() / kRandomNetUnit)
-                              : std::string("(expr)");
-    };
-    switch (d.kind) {
-        case DurationKind::kConstant:
-            return unit(d.a);
-        case DurationKind::kInterval:
-            return unit(d.a) + ".." + unit(d.b);
-        case DurationKind::kAs:
-            return "as #" + std::to_string(d.sibling.value);
-        case DurationKind::kOpen:
-            return "open";
-        default:
-            return "?";
-    }
-}
-
 std::string show_expr(const Expr& e, std::uint32_t at) {
     const Expr::Node& n = e.nodes()[at];
     switch (n.op) {
@@ -433,6 +438,27 @@ std::string show_expr(const Expr& e, std::uint32_t at) {
 }
 std::string show_expr(const Expr& e) {
     return show_expr(e, static_cast<std::uint32_t>(e.nodes().size()) - 1);
+}
+
+std::string show_duration(const DurationDraft& d) {
+    const auto unit = [](const Expr& e) {
+        return e.is_literal() ? std::to_string(e.literal_value() / kRandomNetUnit)
+                              : std::string("(expr)");
+    };
+    switch (d.kind) {
+        case DurationKind::kExpression:
+            return show_expr(d.a);
+        case DurationKind::kConstant:
+            return unit(d.a);
+        case DurationKind::kInterval:
+            return unit(d.a) + ".." + unit(d.b);
+        case DurationKind::kAs:
+            return "as #" + std::to_string(d.sibling.value);
+        case DurationKind::kOpen:
+            return "open";
+        default:
+            return "?";
+    }
 }
 
 }  // namespace
@@ -583,6 +609,9 @@ std::string show(const net::NetDraft& draft) {
         text += t.delay ? " after " + show_duration(t.delay->duration) +
                               memories[static_cast<int>(t.delay->memory)]
                         : "";
+        text +=
+            t.delay && t.delay->servers != 1 ? " servers " + std::to_string(t.delay->servers) : "";
+        text += t.holding ? " holding " + show_duration(*t.holding) : "";
         for (const EventIndex e : t.events) {
             text += " on " + draft.events[e.value].path;
         }

@@ -27,6 +27,9 @@ struct Features {
     bool siblings = true;  // as P
     bool odds = true;
     bool weights = true;
+    bool servers = true;      // delays with several servers
+    bool holdings = true;     // for d
+    bool expressions = true;  // durations computed from data and attributes
 };
 
 // The unit of all its times, in ticks.

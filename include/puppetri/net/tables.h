@@ -87,7 +87,8 @@ struct Special {
     std::uint32_t delay = kNoIndex;
     std::vector<std::pair<std::uint32_t, ProgramIndex>> assignments;
     std::vector<std::uint32_t> must_be_clean;  // refinements
-    std::vector<Weighted> degree;              // of multi-server delays: how often enabled
+    // Of multi-server delays: how often enabled, by the ready tokens and (`now`) by all of a place.
+    std::vector<Weighted> degree, degree_now;
 };
 
 // Paths, captions and positions of many elements in few allocations.
