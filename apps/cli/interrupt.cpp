@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "puppetri/io/atomic_file.h"
+
 namespace puppetri::cli {
 namespace {
 
@@ -11,6 +13,7 @@ volatile std::sig_atomic_t asked = 0;
 
 extern "C" void on_interrupt(int signal) {
     if (asked != 0) {
+        io::remove_unfinished_files();
         std::_Exit(128 + signal);
     }
     asked = 1;
@@ -23,6 +26,12 @@ void catch_interrupts() {
     std::signal(SIGTERM, on_interrupt);
 #ifdef SIGPIPE
     std::signal(SIGPIPE, SIG_IGN);
+#endif
+#ifdef SIGHUP
+    std::signal(SIGHUP, on_interrupt);
+#endif
+#ifdef SIGXFSZ
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is a full disk, told by the write
 #endif
 }
 

@@ -39,7 +39,7 @@ endif()
 
 # A full disk: a limit of file size stands for it. The old file stays.
 file(WRITE "${WORK}/small.glb" "old")
-execute_process(COMMAND sh -c "trap '' XFSZ; ulimit -f 64; exec \"$0\" export \"$1\" -o \"$2\"" "${PUPPETRI}" "${SCENE}"
+execute_process(COMMAND sh -c "ulimit -f 64; exec \"$0\" export \"$1\" -o \"$2\"" "${PUPPETRI}" "${SCENE}"
     "${WORK}/small.glb" RESULT_VARIABLE found ERROR_VARIABLE text OUTPUT_QUIET)
 file(READ "${WORK}/small.glb" kept)
 if(NOT found EQUAL 1 OR NOT kept STREQUAL "old" OR NOT text MATCHES "disk-full")
