@@ -8,26 +8,10 @@ namespace {
 
 constexpr int kGradientSteps = 512, kAzimuths = 4096;
 constexpr float kPi_f = 3.14159265f;
-constexpr Float3 kZenith{0.07f, 0.21f, 0.52f}, kMiddle{0.22f, 0.46f, 0.85f}, kHorizon{0.78f, 0.90f, 1.0f};
+constexpr Float3 kZenith{0.07f, 0.21f, 0.52f}, kMiddle{0.20f, 0.45f, 0.86f}, kHorizon{0.70f, 0.87f, 1.0f};
 constexpr Float3 kWarm{1.0f, 0.80f, 0.58f};
 constexpr Float3 kFarHill{0.44f, 0.60f, 0.74f}, kNearHill{0.30f, 0.45f, 0.42f}, kMeadowHaze{0.46f, 0.58f, 0.52f};
 constexpr Float3 kFloorHaze{0.74f, 0.79f, 0.82f};
-
-// How much of [x - w/2, x + w/2] lies in [low, high].
-float covered(float low, float high, float x, float w) {
-    w = std::max(w, 1e-4f);
-    return std::clamp((std::min(high, x + w / 2) - std::max(low, x - w / 2)) / w, 0.0f, 1.0f);
-}
-
-// The same for the bands [k period, k period + width], k all integers.
-float covered_periodic(float period, float width, float x, float w) {
-    w = std::max(w, 1e-4f);
-    const auto filled = [&](float at) {
-        const auto k = static_cast<float>(floor_int(at / period));
-        return k * width + std::min(at - k * period, width);
-    };
-    return std::clamp((filled(x + w / 2) - filled(x - w / 2)) / w, 0.0f, 1.0f);
-}
 
 // atan2 to 0.0002 rad, enough to look up hills.
 float azimuth(float x, float z) {
@@ -43,13 +27,10 @@ float azimuth(float x, float z) {
 
 Environment::Environment(const Look& look, std::span<const stage::Set> sets)
     : to_sun_(normalized(float3(look.to_sun_world))),
-      fine_(3.0f, 3, {{128, 0.55f}, {256, 0.6f}, {40, 0.25f}}, 1),
-      coarse_(19.0f, 2, {{12, 0.45f}, {31, 0.4f}, {83, 0.35f}, {190, 0.35f}}, 11),
-      wide_(170.0f, 1, {{9, 0.6f}, {23, 0.5f}, {61, 0.4f}}, 23) {
+      road_(!sets.empty() && sets.front().kind == stage::SetKind::kRoad),
+      ground_(road_, sets.empty() ? 0.0f : static_cast<float>(sets.front().width_m)) {
     if (!sets.empty()) {
         const stage::Set& set = sets.front();
-        road_ = set.kind == stage::SetKind::kRoad;
-        half_width_ = static_cast<float>(set.width_m / 2);
         centre_x_ = static_cast<float>(set.position_world.x);
         centre_z_ = static_cast<float>(set.position_world.z);
         along_x_ = static_cast<float>(std::sin(set.direction_rad));
@@ -57,7 +38,7 @@ Environment::Environment(const Look& look, std::span<const stage::Set> sets)
     }
     for (int i = 0; i <= kGradientSteps; ++i) {
         const float y = static_cast<float>(i) / kGradientSteps;
-        const Float3 low = mix(kHorizon, kMiddle, 1 - std::exp(-y * 7.5f));
+        const Float3 low = mix(kHorizon, kMiddle, 1 - std::exp(-y * 8.5f));
         gradient_.push_back(mix(low, kZenith, smooth_step(0.08f, 0.9f, y)));
     }
     // Sums of sines, so that the chains close around.
@@ -106,53 +87,22 @@ Float3 Environment::haze(Float3 light, float distance_m) const {
     return mix(road_ ? kMeadowHaze : kFloorHaze, light, 1 / (1 + square + 0.5f * square * square));
 }
 
-Float3 Environment::ground(float x, float z, float width_x, float width_z) const {
-    const float dx = x - centre_x_, dz = z - centre_z_;
+void Environment::ground(const GroundPoints& world, Colours8& out) const {
     if (!road_) {
-        return floor(dx, dz, width_x, width_z);
+        ground_.colours(world, out);
+        return;
     }
     // Across and along the road.
-    const float across = dx * along_z_ - dz * along_x_, along = dx * along_x_ + dz * along_z_;
+    GroundPoints own;
     const float ca = std::fabs(along_z_), sa = std::fabs(along_x_);
-    return road(across, along, width_x * ca + width_z * sa, width_x * sa + width_z * ca);
-}
-
-Float3 Environment::floor(float x, float z, float width_x, float width_z) const {
-    const Float3 base = Float3{0.40f, 0.375f, 0.34f} * (1 + 0.10f * coarse_(x, z, width_x, width_z) + 0.05f * fine_(x, z, width_x, width_z));
-    const float thin = std::max(covered_periodic(1, 0.012f, x + 0.006f, width_x), covered_periodic(1, 0.012f, z + 0.006f, width_z));
-    const float thick = std::max(covered_periodic(5, 0.03f, x + 0.015f, width_x), covered_periodic(5, 0.03f, z + 0.015f, width_z));
-    const float line = std::min(1.0f, 0.35f * thin + 0.4f * thick);
-    return mix(base, Float3{0.20f, 0.21f, 0.23f}, line);
-}
-
-// The road goes on to the horizon, beyond the length of its set.
-Float3 Environment::road(float x, float z, float width_x, float width_z) const {
-    const float asphalt = covered(-half_width_, half_width_, x, width_x);
-    Float3 colour{};
-    if (asphalt < 1) {
-        const float blades = fine_(x, z, width_x, width_z), tufts = coarse_(x, z, width_x, width_z);
-        const float dry = std::clamp(0.5f + wide_(x, z, width_x, width_z) + 0.25f * tufts, 0.0f, 1.0f);
-        colour = mix(Float3{0.072f, 0.150f, 0.030f}, Float3{0.165f, 0.185f, 0.055f}, dry) * (1 + 0.7f * tufts + 0.9f * blades);
-        // A strip of gravel beside the asphalt, with a ragged rim.
-        const float rim = half_width_ + 0.42f + 0.35f * tufts;
-        const float gravel = covered(-rim, rim, x, width_x + 0.15f);
-        colour = mix(colour, Float3{0.27f, 0.245f, 0.205f} * (1 + 0.9f * blades), gravel);
+    for (std::size_t i = 0; i < kPack; ++i) {
+        const float dx = world.x[i] - centre_x_, dz = world.z[i] - centre_z_;
+        own.x[i] = dx * along_z_ - dz * along_x_;
+        own.z[i] = dx * along_x_ + dz * along_z_;
+        own.width_x[i] = world.width_x[i] * ca + world.width_z[i] * sa;
+        own.width_z[i] = world.width_x[i] * sa + world.width_z[i] * ca;
     }
-    if (asphalt > 0) {
-        const float tone = 1 + 0.36f * fine_(x, z, width_x, width_z) + 0.16f * coarse_(x, z, width_x, width_z) + 0.25f * wide_(x, z, width_x, width_z);
-        Float3 tar = Float3{0.105f, 0.108f, 0.117f} * tone;
-        // Wheels have polished two tracks in each lane.
-        const float lane = std::fabs(std::fabs(x) - half_width_ / 2);
-        tar = tar * (1 + 0.10f * (1 - smooth_step(0.25f, 0.75f, std::fabs(lane - 0.75f))));
-        const float centre = covered(-0.06f, 0.06f, x, width_x) * covered_periodic(4, 1.6f, z + 0.8f, width_z);
-        const float edge = covered(half_width_ - 0.34f, half_width_ - 0.22f, std::fabs(x), width_x);
-        const float paint = std::max(centre, edge);
-        if (paint > 0) {
-            tar = mix(tar, Float3{0.66f, 0.655f, 0.63f}, std::clamp(paint * (0.88f + 0.35f * tone - 0.35f), 0.0f, 1.0f));
-        }
-        colour = mix(colour, tar, asphalt);
-    }
-    return colour;
+    ground_.colours(own, out);
 }
 
 }  // namespace puppetri::render

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What is around the figures and needs no rays: the sky with far hills, the sun, haze, and the ground with its pattern.
-// Patterns are averaged over the footprint of a pixel, so that lines neither flicker nor crawl while the camera moves.
+// What is around the figures and needs no rays: the sky with far hills, the sun, haze, and the ground.
 #pragma once
 #include <array>
 #include <span>
 #include <vector>
 
 #include "float3.h"
-#include "ground_texture.h"
+#include "ground.h"
 #include "puppetri/render/picture.h"
 
 namespace puppetri::render {
@@ -23,21 +22,18 @@ class Environment {
 
     // The sky in a direction (unit length).
     Float3 sky(Float3 direction) const;
-    // Colour of the ground at a point of y = 0; `width_x`, `width_z`: how far the pixel reaches there.
-    Float3 ground(float x, float z, float width_x, float width_z) const;
+    // Colours of the ground at points of the world.
+    void ground(const GroundPoints& world, Colours8& out) const;
     // Light after a way through the haze.
     Float3 haze(Float3 light, float distance_m) const;
 
    private:
-    Float3 road(float x, float z, float width_x, float width_z) const;
-    Float3 floor(float x, float z, float width_x, float width_z) const;
-
     Float3 to_sun_;
     bool road_ = false;
-    float half_width_ = 3, centre_x_ = 0, centre_z_ = 0, along_x_ = 0, along_z_ = 1;
+    float centre_x_ = 0, centre_z_ = 0, along_x_ = 0, along_z_ = 1;
     std::vector<Float3> gradient_;                 // of the sky by the sine of elevation, 0 to 1
     std::vector<std::array<float, 2>> hills_;      // heights of two chains as slopes, by azimuth
-    GroundTexture fine_, coarse_, wide_;
+    Ground ground_;
 };
 
 }  // namespace puppetri::render

@@ -9,6 +9,7 @@
 
 #include "environment.h"
 #include "float3.h"
+#include "lanes.h"
 #include "puppetri/base/require.h"
 #include "shade_maps.h"
 #include "skin.h"
@@ -94,7 +95,8 @@ struct PictureMaker::Data {
     void mark(const std::vector<std::array<float, 2>>& points, const figure::Mesh& mesh, std::vector<std::uint8_t>& tiles);
     bool project(Float3 p, std::array<float, 2>& out) const;
     Float3 direction(float x, float y) const;
-    Float3 background(Float3 d, float sun_share, Sample* sample) const;
+    void background(const std::array<Float3, kPack>& d, unsigned lanes, const Lanes8& sun_share,
+                    std::array<Sample, kPack>& out) const;
     void shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y, unsigned lanes, bool primary,
                bool shadows, std::array<Sample, kPack>& out, std::array<std::uint8_t, kPack>* lit) const;
     void first_pass();
@@ -244,33 +246,47 @@ void PictureMaker::Data::mark_tiles() {
     }
 }
 
-// Sky or ground in a direction; sun_share: of the sun that reaches the ground there.
-Float3 PictureMaker::Data::background(Float3 d, float sun_share, Sample* sample) const {
-    if (d.y > -1e-3f) {
-        return environment.sky(d);
+// Sky or ground in each direction; sun_share: of the sun that reaches the ground there.
+void PictureMaker::Data::background(const std::array<Float3, kPack>& d, unsigned lanes, const Lanes8& sun_share,
+                                    std::array<Sample, kPack>& out) const {
+    GroundPoints points{};
+    Lanes8 distance{};
+    unsigned down = 0;
+    for (std::size_t i = 0; i < kPack; ++i) {
+        if (d[i].y > -1e-3f || eye.at.y <= 0) {
+            continue;
+        }
+        down |= (lanes >> i & 1) << i;
+        distance[i] = -eye.at.y / d[i].y;
+        points.x[i] = eye.at.x + d[i].x * distance[i];
+        points.z[i] = eye.at.z + d[i].z * distance[i];
+        // How far a pixel reaches on the ground: its two sides, projected along the ray.
+        const float size = distance[i] * eye.step, slant = 1 / -d[i].y;
+        const float flat = std::max(1e-4f, std::sqrt(d[i].x * d[i].x + d[i].z * d[i].z));
+        const float cx = std::fabs(d[i].x) / flat, cz = std::fabs(d[i].z) / flat;
+        points.width_x[i] = size * (cx * slant + cz);
+        points.width_z[i] = size * (cz * slant + cx);
     }
-    const float distance = -eye.at.y / d.y;
-    if (distance <= 0) {
-        return environment.sky(d);
+    Colours8 albedo;
+    if (down != 0) {
+        environment.ground(points, albedo);
     }
-    const float x = eye.at.x + d.x * distance, z = eye.at.z + d.z * distance;
-    // How far a pixel reaches on the ground: its two sides, projected along the ray.
-    const float size = distance * eye.step;
-    const float slant = 1 / -d.y;
-    const float flat = std::max(1e-4f, std::sqrt(d.x * d.x + d.z * d.z));
-    const float cx = std::fabs(d.x) / flat, cz = std::fabs(d.z) / flat;
-    const Float3 albedo = environment.ground(x, z, size * (cx * slant + cz), size * (cz * slant + cx));
-    float ambient = 1;
-    for (const Object& o : objects) {
-        ambient *= o.floor.at(x, z);
+    const Float3 sun = environment.sun() * environment.to_sun().y, sky = environment.ambient({0, 1, 0});
+    for (std::size_t i = 0; i < kPack; ++i) {
+        if (!(lanes >> i & 1)) {
+            continue;
+        }
+        if (!(down >> i & 1)) {
+            out[i] = {environment.sky(d[i]), 1e9f, kSkyId};
+            continue;
+        }
+        float ambient = 1;
+        for (const Object& o : objects) {
+            ambient *= o.floor.at(points.x[i], points.z[i]);
+        }
+        const Float3 light_here = albedo.at(i) * (sun * sun_share[i] + sky * ambient);
+        out[i] = {environment.haze(light_here, distance[i]), distance[i], kGroundId};
     }
-    const Float3 up{0, 1, 0};
-    const Float3 falling = environment.sun() * (environment.to_sun().y * sun_share) + environment.ambient(up) * ambient;
-    if (sample != nullptr) {
-        sample->depth = distance;
-        sample->id = kGroundId;
-    }
-    return environment.haze(albedo * falling, distance);
 }
 
 void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y, unsigned lanes,
@@ -359,6 +375,15 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
         rays.far[i] = 100;
     }
     const unsigned dark = to_sun != 0 ? tracer.occluded(rays, to_sun) : 0;
+    Lanes8 sun_share;
+    unsigned missed = 0;
+    for (std::size_t i = 0; i < kPack; ++i) {
+        sun_share[i] = dark >> i & 1 ? 0.0f : 1.0f;
+        missed |= (surfaces[i].material == nullptr ? 1u : 0u) << i;
+    }
+    if ((missed & lanes) != 0) {
+        background(d, missed & lanes, sun_share, out);
+    }
     for (std::size_t i = 0; i < kPack; ++i) {
         if (!(lanes >> i & 1)) {
             continue;
@@ -368,9 +393,6 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
             (*lit)[i] = !shadow;
         }
         if (surfaces[i].material == nullptr) {
-            out[i].id = kSkyId;
-            out[i].depth = 1e9f;
-            out[i].light = background(d[i], shadow ? 0.0f : 1.0f, &out[i]);
             continue;
         }
         const Surface& s = surfaces[i];
@@ -397,6 +419,9 @@ void PictureMaker::Data::first_pass() {
     std::array<float, kPack> x, y;
     std::array<Sample, kPack> samples;
     std::array<std::uint8_t, kPack> lit;
+    std::array<Float3, kPack> d;
+    Lanes8 in_sun;
+    in_sun.fill(1);
     for (int ty = 0; ty < tiles_y; ++ty) {
         for (int tx = 0; tx < tiles_x; ++tx) {
             const auto tile = static_cast<std::size_t>(ty * tiles_x + tx);
@@ -418,10 +443,9 @@ void PictureMaker::Data::first_pass() {
                         shade(x, y, lanes, primary, shadows, samples, &lit);
                     } else {
                         for (std::size_t i = 0; i < kPack; ++i) {
-                            samples[i].id = kSkyId;
-                            samples[i].depth = 1e9f;
-                            samples[i].light = background(direction(x[i], y[i]), 1, &samples[i]);
+                            d[i] = direction(x[i], y[i]);
                         }
+                        background(d, lanes, in_sun, samples);
                     }
                     for (std::size_t i = 0; i < kPack; ++i) {
                         if (lanes >> i & 1) {
@@ -485,16 +509,19 @@ void PictureMaker::Data::refine_shadows() {
                     unsigned open = 0;
                     for (std::size_t i = 0; i < kPack; ++i) {
                         // Samples spread over the pixel as over the sun.
-                        const Float3 d = direction(static_cast<float>(px) + 0.5f + 0.5f * kDisc[i][1],
-                                                   static_cast<float>(py) + 0.5f + 0.5f * kDisc[i][0]);
-                        const float distance = d.y < -1e-4f ? -eye.at.y / d.y : 0;
-                        rays.ox[i] = eye.at.x + d.x * distance;
+                        const Float3 way = direction(static_cast<float>(px) + 0.5f + 0.5f * kDisc[i][1],
+                                                     static_cast<float>(py) + 0.5f + 0.5f * kDisc[i][0]);
+                        const float distance = way.y < -1e-4f ? -eye.at.y / way.y : 0;
+                        rays.ox[i] = eye.at.x + way.x * distance;
                         rays.oy[i] = 1e-4f;
-                        rays.oz[i] = eye.at.z + d.z * distance;
+                        rays.oz[i] = eye.at.z + way.z * distance;
                     }
                     open = static_cast<unsigned>(kPack - __builtin_popcount(tracer.occluded(rays, 0xFF)));
-                    light[at] = background(direction(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f),
-                                           static_cast<float>(open) / kPack, nullptr);
+                    std::array<Float3, kPack> d{};
+                    std::array<Sample, kPack> samples;
+                    d[0] = direction(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
+                    background(d, 1, {static_cast<float>(open) / kPack}, samples);
+                    light[at] = samples[0].light;
                 }
             }
         }
