@@ -92,8 +92,9 @@ int run_command_line(int argc, char** argv, const std::vector<Command>& commands
     app.name("puppetri");
     app.set_version_flag("--version", std::string("puppetri ") + PUPPETRI_VERSION);
     app.require_subcommand(1);
-    app.footer("`puppetri COMMAND --help` explains a command, with examples.\n"
-               "Exit codes: 0 fine, 1 failed or refuted, 2 bad input or usage, 3 unknown.");
+    app.footer(
+        "`puppetri COMMAND --help` explains a command, with examples.\n"
+        "Exit codes: 0 fine, 1 failed or refuted, 2 bad input or usage, 3 unknown.");
     std::list<BoundCommand> bound;
     for (const Command& command : commands) {
         BoundCommand& b = bound.emplace_back();

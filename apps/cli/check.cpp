@@ -25,7 +25,8 @@ int run(const Arguments& arguments) {
         warnings += d.severity == Severity::kWarning ? 1 : 0;
     }
     if (arguments.given("--json")) {
-        std::string text = "{\"file\": \"" + json_escaped(path) + "\", \"errors\": " + std::to_string(errors) +
+        std::string text = "{\"file\": \"" + json_escaped(path) +
+                           "\", \"errors\": " + std::to_string(errors) +
                            ", \"warnings\": " + std::to_string(warnings) + ", \"diagnostics\": [";
         for (std::size_t i = 0; i < list.size(); ++i) {
             text += (i > 0 ? ",\n  " : "\n  ") + to_json(list[i]);
@@ -33,7 +34,8 @@ int run(const Arguments& arguments) {
         std::puts((text + (list.empty() ? "]}" : "\n]}")).c_str());
     } else {
         say_diagnostics(list);
-        say(errors > 0     ? path + ": " + counted(errors, "error") + (warnings > 0 ? ", " + counted(warnings, "warning") : "")
+        say(errors > 0 ? path + ": " + counted(errors, "error") +
+                             (warnings > 0 ? ", " + counted(warnings, "warning") : "")
             : warnings > 0 ? path + ": no errors, " + counted(warnings, "warning")
                            : path + ": fine");
     }
@@ -43,17 +45,19 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command check_command() {
-    return {"check",
-            "tell every defect of a scene or of a library of nets",
-            "Reads the file and what it imports, looks up every name, compares every unit and type, and tells all\n"
-            "defects at once, each with its place, what it is about and what to do. Nothing is run.\n"
-            "Exits 0 when there are no errors, 2 otherwise.\n\n"
-            "Examples:\n"
-            "  puppetri check ball.pup\n"
-            "  puppetri check ball.pup --json      for editors: one object on stdout",
-            {{"file", Value::kText, "FILE", "a .pup file", true},
-             {"--json", Value::kFlag, "", "the defects as JSON on stdout", false}},
-            run};
+    return {
+        "check",
+        "tell every defect of a scene or of a library of nets",
+        "Reads the file and what it imports, looks up every name, compares every unit and type, "
+        "and tells all\n"
+        "defects at once, each with its place, what it is about and what to do. Nothing is run.\n"
+        "Exits 0 when there are no errors, 2 otherwise.\n\n"
+        "Examples:\n"
+        "  puppetri check ball.pup\n"
+        "  puppetri check ball.pup --json      for editors: one object on stdout",
+        {{"file", Value::kText, "FILE", "a .pup file", true},
+         {"--json", Value::kFlag, "", "the defects as JSON on stdout", false}},
+        run};
 }
 
 }  // namespace puppetri::cli

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a command of the program is: data, so that its file says everything about it and knows nothing of the parser of
-// the command line (which is CLI11, in arguments.cpp alone). To add a command: write its file, declare its function in
-// commands.h, name it in the table of commands.cpp.
+// What a command of the program is: data, so that its file says everything about it and knows
+// nothing of the parser of the command line (which is CLI11, in arguments.cpp alone). To add a
+// command: write its file, declare its function in commands.h, name it in the table of
+// commands.cpp.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -21,7 +22,7 @@ enum ExitCode : int {
 enum class Value : std::uint8_t { kFlag, kText, kInteger, kTexts };
 
 struct Option {
-    std::string name;   // "--seed", "-o,--output"; without dashes: an argument by position ("scene")
+    std::string name;  // "--seed", "-o,--output"; without dashes: an argument by position ("scene")
     Value value = Value::kFlag;
     std::string shown;  // what stands for the value in the help: "N", "FILE"
     std::string help;
@@ -30,7 +31,7 @@ struct Option {
 
 // The options that were given, by the last of their names ("--output" for "-o,--output").
 class Arguments {
-   public:
+ public:
     bool given(const std::string& name) const { return values_.count(name) != 0; }
     // The (last) value given, or `otherwise`.
     std::string text(const std::string& name, const std::string& otherwise = "") const;
@@ -41,7 +42,7 @@ class Arguments {
         values_[name] = std::move(values);
     }
 
-   private:
+ private:
     std::map<std::string, std::vector<std::string>> values_;
 };
 
@@ -53,7 +54,8 @@ struct Command {
     int (*run)(const Arguments&) = nullptr;  // gives an ExitCode
 };
 
-// Parses the command line, runs the command, gives the exit code. --help and --version are answered here.
+// Parses the command line, runs the command, gives the exit code. --help and --version are answered
+// here.
 int run_command_line(int argc, char** argv, const std::vector<Command>& commands);
 
 }  // namespace puppetri::cli

@@ -6,13 +6,8 @@ namespace puppetri::cli {
 
 std::vector<Command> all_commands() {
     return {
-        new_command(),
-        check_command(),
-        fmt_command(),
-        run_command(),
-        draw_command(),
-        export_command(),
-        render_command(),
+        new_command(),  check_command(),  fmt_command(),    run_command(),
+        draw_command(), export_command(), render_command(),
     };
 }
 

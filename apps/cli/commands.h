@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The commands, one per file of the same name. A new one is declared here and named in the table of commands.cpp.
+// The commands, one per file of the same name. A new one is declared here and named in the table of
+// commands.cpp.
 #pragma once
 #include <vector>
 

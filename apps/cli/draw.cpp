@@ -32,7 +32,8 @@ int run(const Arguments& arguments) {
 Command draw_command() {
     return {"draw",
             "the net of a scene in mathematical notation",
-            "Prints places P, transitions T, arcs F, weights w, the initial marking M0 and the incidence matrix C\n"
+            "Prints places P, transitions T, arcs F, weights w, the initial marking M0 and the "
+            "incidence matrix C\n"
             "(rows P, columns T: tokens given minus tokens taken).\n\n"
             "Example:\n"
             "  puppetri draw three_arcs.pup --as math",

@@ -58,7 +58,8 @@ int run(const Arguments& arguments) {
 Command fmt_command() {
     return {"fmt",
             "bring a file into its canonical form",
-            "Prints the file as everybody writes it: one layout, all comments kept, nothing else changed. A file with\n"
+            "Prints the file as everybody writes it: one layout, all comments kept, nothing else "
+            "changed. A file with\n"
             "a defect is not formatted.\n\n"
             "Examples:\n"
             "  puppetri fmt ball.pup               print it\n"
@@ -66,7 +67,8 @@ Command fmt_command() {
             "  puppetri fmt ball.pup --check       exit 1 if it would change\n"
             "  puppetri fmt - < ball.pup           from stdin to stdout",
             {{"file", Value::kText, "FILE", "a .pup file, or - for stdin", true},
-             {"--check", Value::kFlag, "", "change nothing; exit 1 if the file is not in canonical form", false},
+             {"--check", Value::kFlag, "",
+              "change nothing; exit 1 if the file is not in canonical form", false},
              {"--write", Value::kFlag, "", "change the file itself", false}},
             run};
 }

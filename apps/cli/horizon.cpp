@@ -31,7 +31,8 @@ std::optional<Rational> decimal(const std::string& text) {
 
 }  // namespace
 
-Result<scene::Horizon, std::string> parse_horizon(const std::string& text, const scene::FrameRate& rate) {
+Result<scene::Horizon, std::string> parse_horizon(const std::string& text,
+                                                  const scene::FrameRate& rate) {
     const std::size_t split = text.find_first_not_of("0123456789.");
     const std::string digits = text.substr(0, split);
     std::string unit = split == std::string::npos ? "" : text.substr(split);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Ctrl-C: the first asks the work to end cleanly with what is known, the second ends the program at once.
+// Ctrl-C: the first asks the work to end cleanly with what is known, the second ends the program at
+// once.
 #pragma once
 
 namespace puppetri::cli {
 
-// Installs the handler for SIGINT and SIGTERM, and ignores SIGPIPE (a closed pipe is an error of a write).
+// Installs the handler for SIGINT and SIGTERM, and ignores SIGPIPE (a closed pipe is an error of a
+// write).
 void catch_interrupts();
 
 // Whether the user asked to stop. Long loops ask this now and then and end cleanly.

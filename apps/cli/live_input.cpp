@@ -16,7 +16,7 @@ namespace {
 
 // Lines of stdin as they come, without blocking longer than asked.
 class Lines {
-   public:
+ public:
     // Waits up to `milliseconds` for input. False when stdin has ended and all lines were taken.
     bool wait(int milliseconds) {
         if (ended_) {
@@ -49,7 +49,7 @@ class Lines {
         return true;
     }
 
-   private:
+ private:
     std::string rest_;
     bool ended_ = false;
 };

@@ -68,7 +68,8 @@ Result<CsvLog, Diagnostics> CsvLog::open(const std::string& path, const net::Net
 }
 
 void CsvLog::fired(SimTime at, net::TransitionIndex transition) {
-    buffer_ += std::to_string(at.ticks) + "," + seconds(at) + "," + field(std::string(net_->transition(transition).path)) + "\n";
+    buffer_ += std::to_string(at.ticks) + "," + seconds(at) + "," +
+               field(std::string(net_->transition(transition).path)) + "\n";
     if (buffer_.size() > (1u << 20)) {
         flush();
     }
@@ -93,12 +94,14 @@ Status CsvLog::commit() {
 
 std::string score_csv(const stage::Performance& performance) {
     std::string text =
-        "start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,movement,prop,instance\n";
+        "start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,movement,prop,"
+        "instance\n";
     for (const stage::ScoreEntry& e : performance.score()) {
         const std::string left = e.left == SimTime::never() ? "" : std::to_string(e.left.ticks);
-        text += std::to_string(e.start.ticks) + "," + std::to_string(e.end.ticks) + "," + left + "," +
-                seconds(e.start) + "," + seconds(e.end) + "," + field(e.place) + "," + field(e.actor) + "," +
-                limbs_text(e.limbs) + "," + field(e.movement) + "," + field(e.prop) + "," + field(e.instance) + "\n";
+        text += std::to_string(e.start.ticks) + "," + std::to_string(e.end.ticks) + "," + left +
+                "," + seconds(e.start) + "," + seconds(e.end) + "," + field(e.place) + "," +
+                field(e.actor) + "," + limbs_text(e.limbs) + "," + field(e.movement) + "," +
+                field(e.prop) + "," + field(e.instance) + "\n";
     }
     return text;
 }
@@ -130,21 +133,24 @@ std::string run_json(const scene::Scene& scene, const scene::Performed& p) {
     for (const Diagnostic& d : p.notes) {
         notes += (notes.empty() ? "\n  " : ",\n  ") + to_json(d);
     }
-    return "{\"scene\": \"" + json_escaped(scene.title) + "\", \"seed\": " + std::to_string(p.seed) +
-           ", \"stop\": \"" + word_of(p) + "\", \"ticks\": " + std::to_string(p.end.ticks) +
-           ", \"seconds\": " + seconds(p.end) + ", \"frames\": " + std::to_string(frames(scene, p.end)) +
+    return "{\"scene\": \"" + json_escaped(scene.title) +
+           "\", \"seed\": " + std::to_string(p.seed) + ", \"stop\": \"" + word_of(p) +
+           "\", \"ticks\": " + std::to_string(p.end.ticks) + ", \"seconds\": " + seconds(p.end) +
+           ", \"frames\": " + std::to_string(frames(scene, p.end)) +
            ", \"firings\": " + std::to_string(p.firings) +
-           ", \"movements\": " + std::to_string(p.performance->score().size()) + ", \"log_hash\": \"" +
-           hash_text_of(p.log_hash) + "\", \"fault\": " + (p.fault ? to_json(*p.fault) : "null") + ", \"notes\": [" +
-           notes + (notes.empty() ? "]}" : "\n]}");
+           ", \"movements\": " + std::to_string(p.performance->score().size()) +
+           ", \"log_hash\": \"" + hash_text_of(p.log_hash) +
+           "\", \"fault\": " + (p.fault ? to_json(*p.fault) : "null") + ", \"notes\": [" + notes +
+           (notes.empty() ? "]}" : "\n]}");
 }
 
 std::string run_summary(const scene::Scene& scene, const scene::Performed& p) {
-    std::string text = (scene.title.empty() ? scene.path : scene.title) + "\n" +
-                       score_chart(*p.performance, p.end, 72) + "  " + number_to_text_fixed(p.end.seconds(), 2) +
-                       " s (" + std::to_string(frames(scene, p.end)) + " frames), " + std::to_string(p.firings) +
-                       " firings, " + std::to_string(p.performance->score().size()) + " movements, seed " +
-                       std::to_string(p.seed) + "; " + describe(p);
+    std::string text =
+        (scene.title.empty() ? scene.path : scene.title) + "\n" +
+        score_chart(*p.performance, p.end, 72) + "  " + number_to_text_fixed(p.end.seconds(), 2) +
+        " s (" + std::to_string(frames(scene, p.end)) + " frames), " + std::to_string(p.firings) +
+        " firings, " + std::to_string(p.performance->score().size()) + " movements, seed " +
+        std::to_string(p.seed) + "; " + describe(p);
     return text;
 }
 

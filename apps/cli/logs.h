@@ -10,14 +10,15 @@
 
 namespace puppetri::cli {
 
-// Writes `tick,seconds,transition` while a run goes on, in pieces, to a file that is whole or absent.
+// Writes `tick,seconds,transition` while a run goes on, in pieces, to a file that is whole or
+// absent.
 class CsvLog final : public run::LogSink {
-   public:
+ public:
     static Result<CsvLog, Diagnostics> open(const std::string& path, const net::Net& net);
     void fired(SimTime at, net::TransitionIndex transition) override;
     Status commit();
 
-   private:
+ private:
     CsvLog(io::AtomicFile file, const net::Net& net) : file_(std::move(file)), net_(&net) {}
     void flush();
 
@@ -27,8 +28,8 @@ class CsvLog final : public run::LogSink {
     Diagnostics problems_;
 };
 
-// start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,movement,prop,instance; left_tick is empty
-// while the token has not left. Limbs stand side by side with + between them.
+// start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,movement,prop,instance;
+// left_tick is empty while the token has not left. Limbs stand side by side with + between them.
 std::string score_csv(const stage::Performance& performance);
 
 // "at the horizon", "at rest in a final marking", ...

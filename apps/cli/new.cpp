@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `puppetri new NAME --template T`: a scene to start from, in the current folder. Nothing is overwritten.
+// `puppetri new NAME --template T`: a scene to start from, in the current folder. Nothing is
+// overwritten.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>

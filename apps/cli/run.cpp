@@ -89,7 +89,8 @@ int run(const Arguments& arguments) {
     }
     if (arguments.given("--record")) {
         good = write_or_say(arguments.text("--record"),
-                            scene::write_event_list(result.recording, result.seed, scene::event_names(scene->net))) &&
+                            scene::write_event_list(result.recording, result.seed,
+                                                    scene::event_names(scene->net))) &&
                good;
     }
     say_diagnostics(result.notes);
@@ -109,31 +110,39 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command run_command() {
-    return {"run",
-            "perform a scene: log, score, statistics",
-            "Plays the scene from time 0 to its horizon (`until` in the file, or --for) and shows who moved when. The\n"
-            "same file, seed and events give the same log everywhere; --hash prints its fingerprint.\n\n"
-            "Log columns:   tick,seconds,transition\n"
-            "Score columns: start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,movement,prop,"
-            "instance\n"
-            "One tick is 1/705600000 s. Events are lines `2.5 s NAME`; on stdin (--events -) the run follows real\n"
-            "time and also takes `now NAME`.\n\n"
-            "Examples:\n"
-            "  puppetri run ball.pup                           a chart of the score\n"
-            "  puppetri run ball.pup --for 20s --seed 3        also 480f (frames), 500x (firings)\n"
-            "  puppetri run ball.pup --log log.csv --score -   - is stdout\n"
-            "  puppetri run show.pup --events - --record session.txt\n"
-            "  puppetri run show.pup --events session.txt --hash",
-            {{"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
-             {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
-             {"--for", Value::kText, "HOW LONG", "a time (40s), frames (960f) or firings (1000x), instead of the scene's", false},
-             {"--log", Value::kText, "FILE", "write each firing as CSV", false},
-             {"--score", Value::kText, "FILE", "write each movement as CSV", false},
-             {"--events", Value::kText, "FILE", "outside events from a list or a recorded session; - for stdin", false},
-             {"--record", Value::kText, "FILE", "write the outside events of this session, to be replayed", false},
-             {"--hash", Value::kFlag, "", "print the fingerprint of the log alone", false},
-             {"--json", Value::kFlag, "", "the summary as JSON on stdout", false}},
-            run};
+    return {
+        "run",
+        "perform a scene: log, score, statistics",
+        "Plays the scene from time 0 to its horizon (`until` in the file, or --for) and shows who "
+        "moved when. The\n"
+        "same file, seed and events give the same log everywhere; --hash prints its "
+        "fingerprint.\n\n"
+        "Log columns:   tick,seconds,transition\n"
+        "Score columns: "
+        "start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,movement,prop,"
+        "instance\n"
+        "One tick is 1/705600000 s. Events are lines `2.5 s NAME`; on stdin (--events -) the run "
+        "follows real\n"
+        "time and also takes `now NAME`.\n\n"
+        "Examples:\n"
+        "  puppetri run ball.pup                           a chart of the score\n"
+        "  puppetri run ball.pup --for 20s --seed 3        also 480f (frames), 500x (firings)\n"
+        "  puppetri run ball.pup --log log.csv --score -   - is stdout\n"
+        "  puppetri run show.pup --events - --record session.txt\n"
+        "  puppetri run show.pup --events session.txt --hash",
+        {{"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
+         {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
+         {"--for", Value::kText, "HOW LONG",
+          "a time (40s), frames (960f) or firings (1000x), instead of the scene's", false},
+         {"--log", Value::kText, "FILE", "write each firing as CSV", false},
+         {"--score", Value::kText, "FILE", "write each movement as CSV", false},
+         {"--events", Value::kText, "FILE",
+          "outside events from a list or a recorded session; - for stdin", false},
+         {"--record", Value::kText, "FILE",
+          "write the outside events of this session, to be replayed", false},
+         {"--hash", Value::kFlag, "", "print the fingerprint of the log alone", false},
+         {"--json", Value::kFlag, "", "the summary as JSON on stdout", false}},
+        run};
 }
 
 }  // namespace puppetri::cli

@@ -14,20 +14,26 @@ constexpr int kRoomForName = 6;  // columns that a movement should have on avera
 
 // A stretch of time drawn as one block of rows, like a system of a music score.
 class Band {
-   public:
-    Band(double begin_s, double length_s, std::size_t width) : begin_s_(begin_s), length_s_(length_s), width_(width) {}
+ public:
+    Band(double begin_s, double length_s, std::size_t width)
+        : begin_s_(begin_s), length_s_(length_s), width_(width) {}
 
     // A movement of row `row`; what was drawn there before ends.
     void add(std::string& row, const stage::ScoreEntry& entry) const {
         const double from = (entry.start.seconds() - begin_s_) / length_s_;
-        const double to = entry.left == SimTime::never() ? 1 : (entry.left.seconds() - begin_s_) / length_s_;
+        const double to =
+            entry.left == SimTime::never() ? 1 : (entry.left.seconds() - begin_s_) / length_s_;
         if (from >= 1 || to <= 0) {
             return;
         }
         const bool goes_on = from < 0;
-        const auto begin = goes_on ? 0 : static_cast<std::size_t>(from * static_cast<double>(width_));
-        const auto end = std::min(width_, std::max(begin + 1, static_cast<std::size_t>(to * static_cast<double>(width_))));
-        std::fill(row.begin() + static_cast<std::ptrdiff_t>(begin), row.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+        const auto begin =
+            goes_on ? 0 : static_cast<std::size_t>(from * static_cast<double>(width_));
+        const auto end = std::min(
+            width_,
+            std::max(begin + 1, static_cast<std::size_t>(to * static_cast<double>(width_))));
+        std::fill(row.begin() + static_cast<std::ptrdiff_t>(begin),
+                  row.begin() + static_cast<std::ptrdiff_t>(end), ' ');
         row[begin] = goes_on ? '.' : '|';
         const std::size_t room = end - begin - 1;
         // One or two letters say nothing.
@@ -47,22 +53,26 @@ class Band {
         std::string line(indent + width_ + 12, ' ');
         for (int i = 0; i * step_s <= length_s_ + 1e-9; ++i) {
             const double at_s = begin_s_ + i * step_s;
-            const std::string label = number_to_text(static_cast<double>(static_cast<long>(at_s * 10 + 0.5)) / 10) + " s";
-            line.replace(indent + static_cast<std::size_t>(i * step_s / length_s_ * static_cast<double>(width_)),
+            const std::string label =
+                number_to_text(static_cast<double>(static_cast<long>(at_s * 10 + 0.5)) / 10) + " s";
+            line.replace(indent + static_cast<std::size_t>(i * step_s / length_s_ *
+                                                           static_cast<double>(width_)),
                          label.size(), label);
         }
         line.erase(line.find_last_not_of(' ') + 1);
         return line + "\n";
     }
 
-   private:
+ private:
     double begin_s_, length_s_;
     std::size_t width_;
 };
 
 // The longest round length that gives movements room on average.
-double band_length_s(const stage::Performance& performance, double end_s, std::size_t rows, std::size_t width) {
-    const double mean_s = end_s * static_cast<double>(rows) / static_cast<double>(performance.score().size());
+double band_length_s(const stage::Performance& performance, double end_s, std::size_t rows,
+                     std::size_t width) {
+    const double mean_s =
+        end_s * static_cast<double>(rows) / static_cast<double>(performance.score().size());
     const double wanted_s = mean_s * static_cast<double>(width) / kRoomForName;
     double length_s = 1;
     const double kFactors[] = {2, 2.5, 2};
@@ -117,7 +127,8 @@ std::string score_chart(const stage::Performance& performance, SimTime end, int 
         }
     }
     if (kMostBands * length_s < end_s - 1e-9) {
-        text += "  ... (the first " + number_to_text(kMostBands * length_s) + " s; --score FILE has all)\n";
+        text += "  ... (the first " + number_to_text(kMostBands * length_s) +
+                " s; --score FILE has all)\n";
     }
     return text;
 }

@@ -7,8 +7,9 @@
 
 namespace puppetri::cli {
 
-// `width` columns of time; a movement begins with | and its name as far as there is room, and lasts until its token
-// leaves. Long runs are broken into bands, of which the first four are shown; `.` goes on from the band before.
+// `width` columns of time; a movement begins with | and its name as far as there is room, and lasts
+// until its token leaves. Long runs are broken into bands, of which the first four are shown; `.`
+// goes on from the band before.
 //           0 s                2 s                4 s
 //     ana   |hold      |throw |ready
 //     ball                    |fly  |

@@ -12,7 +12,8 @@ struct TemplateFile {
     std::string_view text;
 };
 
-// The main file of a template bears its name; files of one template stand together, the main one first.
+// The main file of a template bears its name; files of one template stand together, the main one
+// first.
 std::span<const TemplateFile> template_files();
 
 }  // namespace puppetri::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Movements: `does me.throw(ball, to: other.me)` checked against the signature of the library and bound to the cast,
-// and movements as values: `arms: carry(ball)`.
+// Movements: `does me.throw(ball, to: other.me)` checked against the signature of the library and
+// bound to the cast, and movements as values: `arms: carry(ball)`.
 #include <algorithm>
 
 #include "elaboration.h"
@@ -44,7 +44,9 @@ std::string wanted_types(const motion::TypeSet& types) {
 }
 
 const char* name_of(SubjectKind kind) {
-    return kind == SubjectKind::kActor ? "an actor" : kind == SubjectKind::kLimb ? "a limb" : "a prop";
+    return kind == SubjectKind::kActor  ? "an actor"
+           : kind == SubjectKind::kLimb ? "a limb"
+                                        : "a prop";
 }
 
 // A slot that reads an attribute of the token: its number.
@@ -66,9 +68,11 @@ bool takes_attribute(const motion::TypeSet& types, ValueKind kind) {
 
 }  // namespace
 
-std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call, const Scope& scope) {
+std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
+                                                        const Scope& scope) {
     if (call.kind != lang::ExprKind::kCall && call.kind != lang::ExprKind::kPath) {
-        error("wrong-type", call.span, "this is no movement", "write WHO.MOVEMENT(ARGUMENTS), such as `me.step(left)`");
+        error("wrong-type", call.span, "this is no movement",
+              "write WHO.MOVEMENT(ARGUMENTS), such as `me.step(left)`");
         return std::nullopt;
     }
     const lang::Name& name = call.path.steps.back();
@@ -91,8 +95,9 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call, 
         out.subject = {.kind = SubjectKind::kProp, .prop = prop->prop};
     } else {
         wrong(who.span, "an actor, a limb or a prop that moves", subject,
-              token_attribute(subject) ? "who moves must be known before the run; pass it as an argument of the movement"
-                                       : "");
+              token_attribute(subject)
+                  ? "who moves must be known before the run; pass it as an argument of the movement"
+                  : "");
         if (is_nothing(subject)) {
             check_stand_in_call(call, scope);
         }
@@ -107,9 +112,11 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call, 
                 known.emplace_back(m.name);
             } else if (m.name == name.text) {
                 error("wrong-subject", who.span,
-                      name.text + " is a movement of " + name_of(m.subject) + ", and this is " + name_of(kind),
-                      m.subject == SubjectKind::kLimb ? "name the limb: `me.left_leg." + name.text + "(...)`"
-                                                      : "name another subject");
+                      name.text + " is a movement of " + name_of(m.subject) + ", and this is " +
+                          name_of(kind),
+                      m.subject == SubjectKind::kLimb
+                          ? "name the limb: `me.left_leg." + name.text + "(...)`"
+                          : "name another subject");
                 return std::nullopt;
             }
         }
@@ -141,8 +148,8 @@ void Elaboration::check_stand_in_call(const lang::Expr& call, const Scope& scope
     unknown(call.path.steps.back().span, "movement", name, known);
 }
 
-void Elaboration::bind_arguments(const lang::Expr& call, const MovementSignature& signature, const Scope& scope,
-                                 motion::BoundCall& out) {
+void Elaboration::bind_arguments(const lang::Expr& call, const MovementSignature& signature,
+                                 const Scope& scope, motion::BoundCall& out) {
     const std::string movement(signature.name);
     std::vector<std::string> known;
     for (const motion::Parameter& p : signature.parameters) {
@@ -156,11 +163,13 @@ void Elaboration::bind_arguments(const lang::Expr& call, const MovementSignature
             i = position++;
             if (i >= known.size()) {
                 error("too-many-arguments", a.value.span,
-                      movement + " takes " + std::to_string(known.size()) + " arguments", "remove this one");
+                      movement + " takes " + std::to_string(known.size()) + " arguments",
+                      "remove this one");
                 continue;
             }
         } else {
-            i = static_cast<std::size_t>(std::find(known.begin(), known.end(), a.name.text) - known.begin());
+            i = static_cast<std::size_t>(std::find(known.begin(), known.end(), a.name.text) -
+                                         known.begin());
             if (i == known.size()) {
                 unknown(a.name.span, "argument of " + movement, a.name.text, known);
                 continue;
@@ -178,14 +187,16 @@ void Elaboration::bind_arguments(const lang::Expr& call, const MovementSignature
     for (std::size_t i = 0; i < known.size(); ++i) {
         const motion::Parameter& p = signature.parameters[i];
         if (!given[i] && p.default_text.empty() && !p.optional) {
-            error("missing-argument", call.span, movement + " needs " + wanted_types(p.types) + ": " + known[i],
+            error("missing-argument", call.span,
+                  movement + " needs " + wanted_types(p.types) + ": " + known[i],
                   "write " + known[i] + ": ... (" + std::string(p.doc) + ")");
         }
     }
 }
 
 std::optional<motion::ArgumentValue> Elaboration::bind_argument(const lang::Expr& value,
-                                                                const motion::Parameter& parameter, const Scope& scope,
+                                                                const motion::Parameter& parameter,
+                                                                const Scope& scope,
                                                                 motion::BoundCall& out) {
     using enum ParameterType;
     const motion::TypeSet types = parameter.types;
@@ -232,7 +243,8 @@ std::optional<motion::ArgumentValue> Elaboration::bind_argument(const lang::Expr
     }
     if (const auto* d = std::get_if<DatumTerm>(&term)) {
         error("not-constant", value.span,
-              "the arguments of a movement are fixed before the run; " + draft().data[d->datum.value].path + " is data",
+              "the arguments of a movement are fixed before the run; " +
+                  draft().data[d->datum.value].path + " is data",
               "give the token an attribute with this value, and pass the attribute");
         return std::nullopt;
     }
@@ -258,8 +270,8 @@ std::optional<motion::ArgumentValue> Elaboration::bind_argument(const lang::Expr
         }
     }
     wrong(value.span, wanted_types(types) + " (" + std::string(parameter.doc) + ")", term,
-          types.has(kLength) ? "write it with a unit such as m"
-          : types.has(kTime) ? "write it with a unit such as s"
+          types.has(kLength)  ? "write it with a unit such as m"
+          : types.has(kTime)  ? "write it with a unit such as s"
           : types.has(kAngle) ? "write it with a unit such as deg"
                               : "");
     return std::nullopt;
@@ -268,7 +280,8 @@ std::optional<motion::ArgumentValue> Elaboration::bind_argument(const lang::Expr
 Term Elaboration::movement_value(const lang::Expr& e, const lang::Path& path, const Scope& scope) {
     MovementTerm out;
     out.call.movement = path.steps[0].text;
-    const MovementSignature* signature = motion::find_movement(out.call.movement, SubjectKind::kActor);
+    const MovementSignature* signature =
+        motion::find_movement(out.call.movement, SubjectKind::kActor);
     bind_arguments(e, *signature, scope, out.call);
     return out;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The cast: actors, props and sets with their properties. The scene's own cast comes whole and in order; of an imported
-// file comes what its nets name.
+// The cast: actors, props and sets with their properties. The scene's own cast comes whole and in
+// order; of an imported file comes what its nets name.
 #include "elaboration.h"
 #include "puppetri/figure/palette.h"
 
@@ -50,8 +50,9 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
     stage::Cast& cast = scene.play.cast;
     if (kind == "mannequin" || kind == "stick") {
         const motion::ActorIndex index{static_cast<std::uint32_t>(cast.actors.size())};
-        stage::Actor actor{.name = name,
-                           .body = kind == "stick" ? stage::BodyKind::kStick : stage::BodyKind::kMannequin};
+        stage::Actor actor{
+            .name = name,
+            .body = kind == "stick" ? stage::BodyKind::kStick : stage::BodyKind::kMannequin};
         cast.actors.push_back(actor);
         fill_figure(member, scope, actor);
         cast.actors[index.value] = std::move(actor);
@@ -59,8 +60,9 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
     }
     if (kind == "sphere" || kind == "box") {
         const motion::PropIndex index{static_cast<std::uint32_t>(cast.props.size())};
-        stage::Prop prop{.name = name,
-                         .shape = kind == "box" ? stage::PropShape::kBox : stage::PropShape::kSphere};
+        stage::Prop prop{
+            .name = name,
+            .shape = kind == "box" ? stage::PropShape::kBox : stage::PropShape::kSphere};
         cast.props.push_back(prop);
         fill_prop(member, scope, prop);
         cast.props[index.value] = std::move(prop);
@@ -78,7 +80,8 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
     return Nothing{};
 }
 
-void Elaboration::unknown_property(const lang::Property& property, const std::vector<std::string>& known) {
+void Elaboration::unknown_property(const lang::Property& property,
+                                   const std::vector<std::string>& known) {
     unknown(property.name.span, "property", name_of(property), known);
 }
 
@@ -102,7 +105,8 @@ std::optional<double> Elaboration::quantity_of(const lang::Property& property, c
 
 std::optional<Vec3> Elaboration::point_of(const lang::Expr& value, const Scope& scope) {
     const Term term = evaluate(value, scope);
-    if (const auto* p = std::get_if<PointTerm>(&term); p != nullptr && p->dimension == lang::dimension::kLength) {
+    if (const auto* p = std::get_if<PointTerm>(&term);
+        p != nullptr && p->dimension == lang::dimension::kLength) {
         return Vec3{p->at[0], p->at[1], p->at[2]};
     }
     wrong(value.span, "a point", term, "write it as (x, y, z) m");
@@ -114,7 +118,8 @@ std::optional<std::string> Elaboration::palette_of(const lang::Property& propert
         return std::nullopt;
     }
     const lang::Expr& value = property.values[0];
-    const std::string name = value.kind == lang::ExprKind::kString ? value.text : lang::to_text(value);
+    const std::string name =
+        value.kind == lang::ExprKind::kString ? value.text : lang::to_text(value);
     if (figure::find_palette(name) != nullptr) {
         return name;
     }
@@ -126,14 +131,16 @@ std::optional<std::string> Elaboration::palette_of(const lang::Property& propert
     return std::nullopt;
 }
 
-void Elaboration::fill_figure(const lang::CastMember& member, const Scope& scope, stage::Actor& actor) {
+void Elaboration::fill_figure(const lang::CastMember& member, const Scope& scope,
+                              stage::Actor& actor) {
     for (const lang::Property& p : member.properties) {
         const std::string name = name_of(p);
         if (name == "height") {
-            actor.height_m = quantity_of(p, scope, lang::dimension::kLength, "height 1.75 m").value_or(actor.height_m);
+            actor.height_m = quantity_of(p, scope, lang::dimension::kLength, "height 1.75 m")
+                                 .value_or(actor.height_m);
         } else if (name == "facing") {
-            actor.heading_rad =
-                quantity_of(p, scope, lang::dimension::kAngle, "facing 90 deg").value_or(actor.heading_rad);
+            actor.heading_rad = quantity_of(p, scope, lang::dimension::kAngle, "facing 90 deg")
+                                    .value_or(actor.heading_rad);
         } else if (name == "at") {
             if (has_values(p, 1, "at (0, 0, 0) m")) {
                 actor.position_world = point_of(p.values[0], scope).value_or(actor.position_world);
@@ -159,7 +166,8 @@ void Elaboration::fill_prop(const lang::CastMember& member, const Scope& scope, 
                 prop.size_m = point_of(p.values[0], scope).value_or(prop.size_m);
             }
         } else if (name == "mass") {
-            prop.mass_kg = quantity_of(p, scope, lang::dimension::kMass, "mass 0.4 kg").value_or(prop.mass_kg);
+            prop.mass_kg =
+                quantity_of(p, scope, lang::dimension::kMass, "mass 0.4 kg").value_or(prop.mass_kg);
         } else if (name == "at") {
             if (has_values(p, 1, "at (0, 0.11, 0) m")) {
                 prop.position_world = point_of(p.values[0], scope).value_or(prop.position_world);
@@ -170,7 +178,8 @@ void Elaboration::fill_prop(const lang::CastMember& member, const Scope& scope, 
                 if (const auto* actor = std::get_if<ActorTerm>(&holder)) {
                     prop.held_by = actor->actor;
                 } else {
-                    wrong(p.values[1].span, "the hands of an actor", holder, "write `held by ana.hands`");
+                    wrong(p.values[1].span, "the hands of an actor", holder,
+                          "write `held by ana.hands`");
                 }
             }
         } else if (name == "palette") {
@@ -183,7 +192,8 @@ void Elaboration::fill_prop(const lang::CastMember& member, const Scope& scope, 
 
 // `ana.hands` or `ana`.
 Term Elaboration::holder_actor(const lang::Expr& e, const Scope& scope) {
-    if (e.kind == lang::ExprKind::kPath && e.path.steps.size() == 2 && e.path.steps[1].text == "hands") {
+    if (e.kind == lang::ExprKind::kPath && e.path.steps.size() == 2 &&
+        e.path.steps[1].text == "hands") {
         lang::Path who = e.path;
         who.steps.pop_back();
         who.span = who.steps[0].span;
@@ -204,12 +214,14 @@ void Elaboration::fill_set(const lang::CastMember& member, const Scope& scope, s
                 set.kind = model == "road" ? stage::SetKind::kRoad : stage::SetKind::kFloor;
             }
         } else if (name == "length") {
-            set.length_m = quantity_of(p, scope, lang::dimension::kLength, "length 60 m").value_or(set.length_m);
+            set.length_m = quantity_of(p, scope, lang::dimension::kLength, "length 60 m")
+                               .value_or(set.length_m);
         } else if (name == "width") {
-            set.width_m = quantity_of(p, scope, lang::dimension::kLength, "width 6 m").value_or(set.width_m);
+            set.width_m =
+                quantity_of(p, scope, lang::dimension::kLength, "width 6 m").value_or(set.width_m);
         } else if (name == "facing") {
-            set.direction_rad =
-                quantity_of(p, scope, lang::dimension::kAngle, "facing 90 deg").value_or(set.direction_rad);
+            set.direction_rad = quantity_of(p, scope, lang::dimension::kAngle, "facing 90 deg")
+                                    .value_or(set.direction_rad);
         } else if (name == "at") {
             if (has_values(p, 1, "at (0, 0, 0) m")) {
                 set.position_world = point_of(p.values[0], scope).value_or(set.position_world);
@@ -225,7 +237,8 @@ void Elaboration::complete_cast() {
         const auto first = cast_.find({0, member.name.text});
         if (first != cast_.end() && cast_where_[member.name.text] != member.span) {
             About about(*this, member.kind.text + " " + member.name.text, member.span);
-            error("name-twice", member.name.span, "the cast already has a " + member.name.text, "rename one of them");
+            error("name-twice", member.name.span, "the cast already has a " + member.name.text,
+                  "rename one of them");
             continue;
         }
         cast_member(member.name.text, 0);
@@ -240,7 +253,8 @@ void Elaboration::check_cast() {
     }
 }
 
-// camera main { at (0, 1.6, 8) m, looks at (0, 1, 0) m, keeps ana and rui in view, moves with them, opens 35 deg }
+// camera main { at (0, 1.6, 8) m, looks at (0, 1, 0) m, keeps ana and rui in view, moves with them,
+// opens 35 deg }
 void Elaboration::add_camera(const lang::Block& block) {
     const Scope scope{.sees_all = true};
     Camera camera{.name = block.name.text.empty() ? "main" : block.name.text};
@@ -265,7 +279,8 @@ void Elaboration::add_camera(const lang::Block& block) {
         } else if (name == "opens") {
             camera.fov_rad = quantity_of(p, scope, lang::dimension::kAngle, "opens 35 deg");
             if (camera.fov_rad && (*camera.fov_rad < 0.05 || *camera.fov_rad > 2.6)) {
-                error("out-of-range", p.span, "a camera opens between 3 and 148 degrees", "write `opens 35 deg`");
+                error("out-of-range", p.span, "a camera opens between 3 and 148 degrees",
+                      "write `opens 35 deg`");
             }
         } else {
             unknown_property(p, {"at", "looks", "keeps", "moves", "opens"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Constants: exact numbers with checked units, folded as far as they go, and the checks of places in a file where only
-// a constant will do.
+// Constants: exact numbers with checked units, folded as far as they go, and the checks of places
+// in a file where only a constant will do.
 #include <cmath>
 
 #include "elaboration.h"
@@ -31,19 +31,26 @@ bool holds(lang::Op op, int order) {
 
 }  // namespace
 
-Term Elaboration::number_of(const lang::Expr& e, const Rational& written, const std::string& unit, lang::Span where) {
+Term Elaboration::number_of(const lang::Expr& e, const Rational& written, const std::string& unit,
+                            lang::Span where) {
     const std::optional<lang::Quantity> q = lang::to_quantity(written, unit);
     if (!q) {
-        error("number-too-large", where, "this number does not fit", "use a smaller one, or another unit");
+        error("number-too-large", where, "this number does not fit",
+              "use a smaller one, or another unit");
         return Nothing{};
     }
-    Number n{.exact = q->number, .pi_power = q->pi_power, .is_exact = true, .value = q->value(), .dimension = q->dimension};
+    Number n{.exact = q->number,
+             .pi_power = q->pi_power,
+             .is_exact = true,
+             .value = q->value(),
+             .dimension = q->dimension};
     if (n.dimension.frame == 0) {
         return n;
     }
     const std::optional<FrameRate> rate = frame_rate_of(where.file);
     if (!rate) {
-        error("wrong-unit", where, "a frame rate cannot be counted in frames", "write `frames 24 per second`");
+        error("wrong-unit", where, "a frame rate cannot be counted in frames",
+              "write `frames 24 per second`");
         return Nothing{};
     }
     // One frame is denominator / numerator seconds.
@@ -63,8 +70,8 @@ Term Elaboration::fold_numbers(const lang::Expr& e, lang::Op op, const Number& a
     const bool sum = op == Op::kAdd || op == Op::kSubtract || comparison(op);
     if (sum && a.dimension != b.dimension) {
         error("wrong-unit", e.span,
-              std::string(comparison(op) ? "cannot compare " : "cannot add or subtract ") + lang::to_text(a.dimension) +
-                  " and " + lang::to_text(b.dimension),
+              std::string(comparison(op) ? "cannot compare " : "cannot add or subtract ") +
+                  lang::to_text(a.dimension) + " and " + lang::to_text(b.dimension),
               "give both the same kind of unit");
         return Nothing{};
     }
@@ -84,7 +91,8 @@ Term Elaboration::fold_numbers(const lang::Expr& e, lang::Op op, const Number& a
         case Op::kDiv:
         case Op::kMod: {
             if (!a.is_integer() || !b.is_integer()) {
-                error("wrong-type", e.span, "div and mod are for whole numbers", "use / for others");
+                error("wrong-type", e.span, "div and mod are for whole numbers",
+                      "use / for others");
                 return Nothing{};
             }
             // Towards minus infinity; the remainder has the sign of the divisor.
@@ -103,7 +111,8 @@ Term Elaboration::fold_numbers(const lang::Expr& e, lang::Op op, const Number& a
         case Op::kPower: {
             if (b.is_integer() && b.exact.numerator >= -64 && b.exact.numerator <= 64) {
                 if (a.value == 0 && b.exact.numerator < 0) {
-                    error("division-by-zero", e.span, "zero to a negative power", "use another base");
+                    error("division-by-zero", e.span, "zero to a negative power",
+                          "use another base");
                     return Nothing{};
                 }
                 if (a.plain() || (b.exact.numerator >= -9 && b.exact.numerator <= 9)) {
@@ -122,7 +131,8 @@ Term Elaboration::fold_numbers(const lang::Expr& e, lang::Op op, const Number& a
     }
 }
 
-std::optional<Number> Elaboration::constant_number(const lang::Expr& e, const Scope& scope, lang::Dimension dimension,
+std::optional<Number> Elaboration::constant_number(const lang::Expr& e, const Scope& scope,
+                                                   lang::Dimension dimension,
                                                    std::string_view what) {
     const Term term = evaluate(e, scope);
     const Number* n = std::get_if<Number>(&term);
@@ -141,7 +151,9 @@ std::optional<Number> Elaboration::constant_number(const lang::Expr& e, const Sc
     }
     if (result.dimension != dimension) {
         const std::string unit(lang::example_unit(dimension));
-        wrong(e.span, lang::to_text(dimension), term, unit.empty() ? "write a number without unit" : "write it with a unit such as " + unit);
+        wrong(
+            e.span, lang::to_text(dimension), term,
+            unit.empty() ? "write a number without unit" : "write it with a unit such as " + unit);
         return std::nullopt;
     }
     return result;
@@ -158,7 +170,8 @@ std::optional<std::int64_t> Elaboration::constant_integer(const lang::Expr& e, c
         return std::nullopt;
     }
     if (!n->is_integer()) {
-        error("wrong-type", e.span, std::string(what) + " must be a whole number", "round it, or use another one");
+        error("wrong-type", e.span, std::string(what) + " must be a whole number",
+              "round it, or use another one");
         return std::nullopt;
     }
     return n->exact.numerator;
@@ -168,16 +181,19 @@ std::optional<SimTime> Elaboration::ticks(const Number& seconds, lang::Span wher
     const bool exact = seconds.is_exact && seconds.pi_power == 0;
     const std::optional<Ticks> t = exact ? to_ticks(seconds.exact) : to_ticks(seconds.value);
     if (!t) {
-        error("number-too-large", where, "this time does not fit", "use a shorter one: at most 400 years");
+        error("number-too-large", where, "this time does not fit",
+              "use a shorter one: at most 400 years");
         return std::nullopt;
     }
     if (!t->exact) {
-        tell(Severity::kNote, "rounded", where, "this is no whole number of ticks of 1/705600000 s and was rounded to one", "");
+        tell(Severity::kNote, "rounded", where,
+             "this is no whole number of ticks of 1/705600000 s and was rounded to one", "");
     }
     return t->time;
 }
 
-std::optional<SimTime> Elaboration::constant_time(const lang::Expr& e, const Scope& scope, std::string_view what) {
+std::optional<SimTime> Elaboration::constant_time(const lang::Expr& e, const Scope& scope,
+                                                  std::string_view what) {
     const std::optional<Number> n = constant_number(e, scope, lang::dimension::kTime, what);
     return n ? ticks(*n, e.span) : std::nullopt;
 }
@@ -192,7 +208,8 @@ std::optional<FrameRate> Elaboration::frame_rate_of(std::uint32_t file) {
         if (!e) {
             continue;
         }
-        // The header is a number, perhaps a fraction such as 30000/1001; a rate in frames would ask for itself.
+        // The header is a number, perhaps a fraction such as 30000/1001; a rate in frames would ask
+        // for itself.
         if (reading_rate_) {
             return std::nullopt;
         }
@@ -200,7 +217,8 @@ std::optional<FrameRate> Elaboration::frame_rate_of(std::uint32_t file) {
         const Term term = evaluate(e, {});
         reading_rate_ = false;
         const Number* n = std::get_if<Number>(&term);
-        if (n == nullptr || !n->is_exact || n->pi_power != 0 || !n->plain() || n->value <= 0 || n->value > 1e6) {
+        if (n == nullptr || !n->is_exact || n->pi_power != 0 || !n->plain() || n->value <= 0 ||
+            n->value > 1e6) {
             wrong(e.span, "a positive number of frames per second", term);
             return FrameRate{};  // told; go on with a usual one
         }

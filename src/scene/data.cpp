@@ -27,7 +27,8 @@ void Elaboration::complete_data() {
             continue;
         }
         if (!initial->is_literal()) {
-            error("not-constant", node.initial.span, "the initial value must be known before the run",
+            error("not-constant", node.initial.span,
+                  "the initial value must be known before the run",
                   "use numbers and parameters only");
             continue;
         }
@@ -57,13 +58,17 @@ void Elaboration::complete_events() {
             continue;
         }
         const auto every = constant_time(node.every, scope, "the time between events");
-        const auto from = node.from ? constant_time(node.from, scope, "the first time of an event") : every;
-        const auto until = node.until ? constant_time(node.until, scope, "the last time of an event") : std::nullopt;
+        const auto from =
+            node.from ? constant_time(node.from, scope, "the first time of an event") : every;
+        const auto until = node.until
+                               ? constant_time(node.until, scope, "the last time of an event")
+                               : std::nullopt;
         if (!every || !from || (node.until && !until)) {
             continue;
         }
         if (every->ticks <= 0 || from->ticks < 0) {
-            error("negative-time", node.every.span, "an event that repeats needs a time above 0 between occurrences",
+            error("negative-time", node.every.span,
+                  "an event that repeats needs a time above 0 between occurrences",
                   "choose a longer one");
             continue;
         }
@@ -74,7 +79,8 @@ void Elaboration::complete_events() {
         const SimTime last = until.value_or(SimTime{});
         constexpr std::int64_t kMost = 1'000'000;
         if ((last.ticks - from->ticks) / every->ticks >= kMost) {
-            error("net-too-large", node.every.span, "more than " + std::to_string(kMost) + " scheduled occurrences",
+            error("net-too-large", node.every.span,
+                  "more than " + std::to_string(kMost) + " scheduled occurrences",
                   "leave `until` out: then it repeats for ever at no cost");
             continue;
         }
@@ -143,9 +149,9 @@ void Elaboration::complete_attributes() {
     }
 }
 
-std::optional<std::vector<Expr>> Elaboration::bind_attributes(const std::vector<lang::Binding>& given,
-                                                              net::PlaceIndex place, const Scope& scope,
-                                                              lang::Span where, std::string_view except) {
+std::optional<std::vector<Expr>> Elaboration::bind_attributes(
+    const std::vector<lang::Binding>& given, net::PlaceIndex place, const Scope& scope,
+    lang::Span where, std::string_view except) {
     const std::vector<net::AttributeDraft>& attributes = draft().places[place.value].attributes;
     const std::string& path = draft().places[place.value].path;
     std::vector<std::optional<Expr>> values(attributes.size());
@@ -175,12 +181,15 @@ std::optional<std::vector<Expr>> Elaboration::bind_attributes(const std::vector<
     for (std::size_t i = 0; i < attributes.size(); ++i) {
         const std::vector<lang::Parameter>* declared = places_[place.value].declared;
         const bool told = !good;
-        if (!values[i] && declared != nullptr && i < declared->size() && (*declared)[i].default_value) {
-            values[i] = expr_of((*declared)[i].default_value, places_[place.value].scope, attributes[i].type);
+        if (!values[i] && declared != nullptr && i < declared->size() &&
+            (*declared)[i].default_value) {
+            values[i] = expr_of((*declared)[i].default_value, places_[place.value].scope,
+                                attributes[i].type);
         }
         if (!values[i]) {
             if (!told) {
-                error("missing-attribute", where, "a token of " + path + " needs its " + attributes[i].name,
+                error("missing-attribute", where,
+                      "a token of " + path + " needs its " + attributes[i].name,
                       "write " + path + "(" + attributes[i].name + " = ...)");
             }
             return std::nullopt;

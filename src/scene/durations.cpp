@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How long: constants, expressions, intervals and distributions, of places (`takes`) and of transitions (`after`,
-// `for`).
+// How long: constants, expressions, intervals and distributions, of places (`takes`) and of
+// transitions (`after`, `for`).
 #include "elaboration.h"
 #include "puppetri/lang/types.h"
 
@@ -38,8 +38,8 @@ const DistributionSignature* find_distribution(const lang::Expr& e) {
 }
 
 bool constant_distribution(const lang::Expr& e) {
-    return e.kind == lang::ExprKind::kCall && e.path.steps.size() == 1 && e.path.steps[0].text == "constant" &&
-           e.args.size() == 1;
+    return e.kind == lang::ExprKind::kCall && e.path.steps.size() == 1 &&
+           e.path.steps[0].text == "constant" && e.args.size() == 1;
 }
 
 }  // namespace
@@ -115,34 +115,38 @@ net::DurationDraft Elaboration::distribution_of(const lang::Expr& e, const Scope
             }
             if (a.name.text.empty()) {
                 error("too-many-arguments", a.value.span,
-                      std::string(d.name) + " takes " + std::to_string(known.size()) + " arguments", "remove this one");
+                      std::string(d.name) + " takes " + std::to_string(known.size()) + " arguments",
+                      "remove this one");
             } else {
                 unknown(a.name.span, std::string("parameter of ") + d.name, a.name.text, known);
             }
             continue;
         }
         if (given[i] != nullptr) {
-            error("repeated-argument", a.value.span, std::string(d.parameters[i]) + " is given twice", "remove one");
+            error("repeated-argument", a.value.span,
+                  std::string(d.parameters[i]) + " is given twice", "remove one");
         }
         given[i] = &a.value;
     }
     for (int i = 0; i < 4 && d.parameters[i] != nullptr; ++i) {
         if (given[i] == nullptr) {
             if (i < d.required) {
-                error("missing-argument", e.span, std::string(d.name) + " needs its " + d.parameters[i],
+                error("missing-argument", e.span,
+                      std::string(d.name) + " needs its " + d.parameters[i],
                       std::string("write ") + d.parameters[i] + ": ...");
                 return {.where = out.where};
             }
             if (i == 3 && given[2] != nullptr) {
-                error("missing-argument", e.span, std::string(d.name) + " with a low end needs its high", "write high: ...");
+                error("missing-argument", e.span,
+                      std::string(d.name) + " with a low end needs its high", "write high: ...");
                 return {.where = out.where};
             }
             break;
         }
         const bool shape = std::string_view(d.parameters[i]) == "shape";
-        const ValueType type = !shape                                             ? kTime
+        const ValueType type = !shape                                ? kTime
                                : d.kind == DistributionKind::kErlang ? ValueType{ValueKind::kInt}
-                                                                          : ValueType{ValueKind::kReal};
+                                                                     : ValueType{ValueKind::kReal};
         auto value = expr_of(*given[static_cast<std::size_t>(i)], scope, type);
         if (!value) {
             return {.where = out.where};
@@ -154,12 +158,14 @@ net::DurationDraft Elaboration::distribution_of(const lang::Expr& e, const Scope
 
 // empirical(1 s, 1.5 s, 2 s) or empirical([1, 1.5, 2] s); discrete((1 s, 0.3), (2 s, 0.7)) or
 // discrete([1, 2] s, [0.3, 0.7]).
-net::DurationDraft Elaboration::sample_distribution(const lang::Expr& e, const Scope& scope, net::DurationDraft out) {
+net::DurationDraft Elaboration::sample_distribution(const lang::Expr& e, const Scope& scope,
+                                                    net::DurationDraft out) {
     constexpr ValueType kTime{ValueKind::kTime};
     const net::DurationDraft nothing{.where = out.where};
     std::vector<Expr> times, weights;
     bool good = true;
-    const auto take = [&](const lang::Expr& value, const lang::Expr& list, ValueType type, std::vector<Expr>& into) {
+    const auto take = [&](const lang::Expr& value, const lang::Expr& list, ValueType type,
+                          std::vector<Expr>& into) {
         lang::Expr with_unit = value;
         if (!list.unit.empty() && value.kind == lang::ExprKind::kNumber && value.unit.empty()) {
             with_unit.unit = list.unit;
@@ -177,7 +183,8 @@ net::DurationDraft Elaboration::sample_distribution(const lang::Expr& e, const S
         if (a.kind == lang::ExprKind::kList) {
             const bool is_weights = discrete && i == 1;
             for (const lang::Argument& item : a.args) {
-                take(item.value, a, is_weights ? ValueType{ValueKind::kReal} : kTime, is_weights ? weights : times);
+                take(item.value, a, is_weights ? ValueType{ValueKind::kReal} : kTime,
+                     is_weights ? weights : times);
             }
         } else if (discrete && a.kind == lang::ExprKind::kTuple && a.args.size() == 2) {
             take(a.args[0].value, a, kTime, times);
@@ -193,8 +200,10 @@ net::DurationDraft Elaboration::sample_distribution(const lang::Expr& e, const S
     }
     if (times.empty() || (discrete && weights.size() != times.size())) {
         error("missing-argument", e.span,
-              discrete ? "discrete needs as many weights as values" : "empirical needs at least one value",
-              discrete ? "write pairs: discrete((1 s, 0.3), (2 s, 0.7))" : "write empirical(1 s, 1.5 s, 2 s)");
+              discrete ? "discrete needs as many weights as values"
+                       : "empirical needs at least one value",
+              discrete ? "write pairs: discrete((1 s, 0.3), (2 s, 0.7))"
+                       : "write empirical(1 s, 1.5 s, 2 s)");
         return nothing;
     }
     for (std::size_t i = 0; i < times.size(); ++i) {

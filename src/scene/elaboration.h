@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Elaboration: from syntax trees to one flat draft of a net, a cast and a list of actions. Nets are instantiated first
-// (a tree of instances, each with a table of its members), so that afterwards everything can be named from everywhere in
-// any order; then each kind of statement is completed in one pass. Every defect is told and replaced by Nothing, which
-// agrees with everything, so that one defect gives one message. One .cpp per concept; this header is their common table.
+// Elaboration: from syntax trees to one flat draft of a net, a cast and a list of actions. Nets are
+// instantiated first (a tree of instances, each with a table of its members), so that afterwards
+// everything can be named from everywhere in any order; then each kind of statement is completed in
+// one pass. Every defect is told and replaced by Nothing, which agrees with everything, so that one
+// defect gives one message. One .cpp per concept; this header is their common table.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -49,7 +50,15 @@ struct Function;  // functions.cpp
 // A movement that may be an argument of others: `carry` in `arms: carry(ball)`.
 bool is_argument_movement(std::string_view name);
 
-enum class MemberKind : std::uint8_t { kPlace, kTransition, kState, kDatum, kEvent, kInstance, kEnumeration };
+enum class MemberKind : std::uint8_t {
+    kPlace,
+    kTransition,
+    kState,
+    kDatum,
+    kEvent,
+    kInstance,
+    kEnumeration
+};
 
 struct Member {
     MemberKind kind = MemberKind::kPlace;
@@ -61,13 +70,13 @@ inline constexpr std::uint32_t kNoInstance = ~std::uint32_t{0};
 
 // A net with its parameters, or the scene itself (number 0).
 struct Instance {
-    const lang::Net* net = nullptr;    // null: the scene's own body
+    const lang::Net* net = nullptr;  // null: the scene's own body
     const lang::Body* body = nullptr;
     std::uint32_t file = 0;
-    std::string path;                  // "a.with_ball"; empty: the scene
-    std::uint32_t up = kNoInstance;    // whose body it was made in
-    net::PlaceIndex refines;           // the place that runs it, if any
-    lang::Span where;                  // of the use
+    std::string path;                // "a.with_ball"; empty: the scene
+    std::uint32_t up = kNoInstance;  // whose body it was made in
+    net::PlaceIndex refines;         // the place that runs it, if any
+    lang::Span where;                // of the use
     Scope argument_scope;
     std::vector<const lang::Expr*> arguments;  // by parameter; null: its default
     enum class Bound : std::uint8_t { kNo, kNow, kYes };
@@ -98,7 +107,7 @@ struct StateElement : Element<lang::State> {
 };
 
 class Elaboration {
-   public:
+ public:
     explicit Elaboration(const Library& library) : library_(library) {}
 
     // The scene of file 0.
@@ -109,24 +118,27 @@ class Elaboration {
     // Whether this net was instantiated.
     bool used(const lang::Net& net) const { return used_.count(key(net.span)) != 0; }
 
-    Scene scene;              // but for `net`
+    Scene scene;  // but for `net`
     Diagnostics diagnostics;
     // Statements that have an error: what is said about them further on is a consequence.
     std::set<std::pair<std::string, std::uint32_t>> broken_lines;
 
-   private:
+ private:
     friend class About;
 
     // telling.cpp
-    void tell(Severity severity, std::string code, lang::Span where, std::string message, std::string remedy);
+    void tell(Severity severity, std::string code, lang::Span where, std::string message,
+              std::string remedy);
     void error(std::string code, lang::Span where, std::string message, std::string remedy) {
         tell(Severity::kError, std::move(code), where, std::move(message), std::move(remedy));
     }
     void warn(std::string code, lang::Span where, std::string message, std::string remedy) {
         tell(Severity::kWarning, std::move(code), where, std::move(message), std::move(remedy));
     }
-    void unknown(lang::Span where, std::string_view kind, std::string_view name, const std::vector<std::string>& known);
-    void wrong(lang::Span where, const std::string& wanted, const Term& got, std::string remedy = "");
+    void unknown(lang::Span where, std::string_view kind, std::string_view name,
+                 const std::vector<std::string>& known);
+    void wrong(lang::Span where, const std::string& wanted, const Term& got,
+               std::string remedy = "");
     // A node of the trees, told by where it stands.
     using NodeKey = std::pair<std::uint32_t, std::uint32_t>;
     static NodeKey key(lang::Span span) { return {span.file, span.begin}; }
@@ -134,8 +146,9 @@ class Elaboration {
     SourceSpan at(lang::Span span) const { return library_.where(span); }
 
     // instances.cpp -- the tree of nets
-    std::uint32_t make_instance(const Declaration& net, std::string path, lang::Span where, Scope scope,
-                                const std::vector<lang::Argument>& arguments, net::PlaceIndex refines);
+    std::uint32_t make_instance(const Declaration& net, std::string path, lang::Span where,
+                                Scope scope, const std::vector<lang::Argument>& arguments,
+                                net::PlaceIndex refines);
     void expand(std::uint32_t instance);
     void expand_body(const lang::Body& body, const Scope& scope);
     void unroll(const lang::For& loop, const Scope& scope);
@@ -145,12 +158,15 @@ class Elaboration {
     bool add_member(const Scope& scope, const lang::Name& name, Member member);
     std::string key_of(const lang::Name& name, const Scope& scope);
     std::string path_of(const lang::Name& name, const Scope& scope);
-    std::optional<Declaration> find_declaration(const lang::Path& path, std::uint32_t file, std::string_view kind);
+    std::optional<Declaration> find_declaration(const lang::Path& path, std::uint32_t file,
+                                                std::string_view kind);
 
     // parameters.cpp -- their types and values
     Term parameter_value(std::uint32_t instance, std::size_t parameter);
-    Term fit_parameter(const lang::Parameter& parameter, Term value, lang::Span where, const Scope& scope);
-    std::optional<ValueType> value_type(const lang::Expr& type, const Scope& scope, std::optional<Value>* low = nullptr,
+    Term fit_parameter(const lang::Parameter& parameter, Term value, lang::Span where,
+                       const Scope& scope);
+    std::optional<ValueType> value_type(const lang::Expr& type, const Scope& scope,
+                                        std::optional<Value>* low = nullptr,
                                         std::optional<Value>* high = nullptr);
 
     // names.cpp -- what a path stands for
@@ -160,7 +176,8 @@ class Elaboration {
     Term member_term(const Member& member);
     std::vector<std::string> names_in(const Scope& scope);
     std::optional<Term> cast_member(std::string_view name, std::uint32_t file);
-    net::HostAtomIndex host_atom(net::HostAtom::Kind kind, std::string subject, std::string value, lang::Span where);
+    net::HostAtomIndex host_atom(net::HostAtom::Kind kind, std::string subject, std::string value,
+                                 lang::Span where);
     net::EventIndex movement_event(net::PlaceIndex place, const lang::Name& name);
 
     // constants.cpp, expressions.cpp -- what an expression stands for
@@ -176,11 +193,14 @@ class Elaboration {
     Term fold_numbers(const lang::Expr& e, lang::Op op, const Number& a, const Number& b);
     Term compare_things(const lang::Expr& e, const Term& a, const Term& b);
     std::optional<FrameRate> frame_rate_of(std::uint32_t file);
-    Term number_of(const lang::Expr& e, const Rational& number, const std::string& unit, lang::Span where);
-    std::optional<Number> constant_number(const lang::Expr& e, const Scope& scope, lang::Dimension dimension,
-                                          std::string_view what);
-    std::optional<std::int64_t> constant_integer(const lang::Expr& e, const Scope& scope, std::string_view what);
-    std::optional<SimTime> constant_time(const lang::Expr& e, const Scope& scope, std::string_view what);
+    Term number_of(const lang::Expr& e, const Rational& number, const std::string& unit,
+                   lang::Span where);
+    std::optional<Number> constant_number(const lang::Expr& e, const Scope& scope,
+                                          lang::Dimension dimension, std::string_view what);
+    std::optional<std::int64_t> constant_integer(const lang::Expr& e, const Scope& scope,
+                                                 std::string_view what);
+    std::optional<SimTime> constant_time(const lang::Expr& e, const Scope& scope,
+                                         std::string_view what);
     // Seconds to ticks, once, with a note where that rounds.
     std::optional<SimTime> ticks(const Number& seconds, lang::Span where);
     // A plain number where a time is wanted takes the file's unit of time.
@@ -208,8 +228,8 @@ class Elaboration {
     void add_camera(const lang::Block& block);
     void keep_in_view(const lang::Expr& e, const Scope& scope, Camera& camera);
     std::optional<Vec3> point_of(const lang::Expr& value, const Scope& scope);
-    std::optional<double> quantity_of(const lang::Property& property, const Scope& scope, lang::Dimension dimension,
-                                      const char* form);
+    std::optional<double> quantity_of(const lang::Property& property, const Scope& scope,
+                                      lang::Dimension dimension, const char* form);
     std::optional<std::string> palette_of(const lang::Property& property);
     bool has_values(const lang::Property& property, std::size_t count, const char* form);
     void unknown_property(const lang::Property& property, const std::vector<std::string>& known);
@@ -217,29 +237,35 @@ class Elaboration {
     void check_cast();
     void complete_blocks();
 
-    // data.cpp, places.cpp, durations.cpp, actions.cpp, transitions.cpp, events.cpp, rules.cpp -- the passes
+    // data.cpp, places.cpp, durations.cpp, actions.cpp, transitions.cpp, events.cpp, rules.cpp --
+    // the passes
     void complete_data();
     void complete_attributes();
     void complete_places();
     void complete_place(std::size_t index);
     void complete_tokens(std::size_t index);
-    std::optional<std::vector<Expr>> bind_attributes(const std::vector<lang::Binding>& given, net::PlaceIndex place,
-                                                     const Scope& scope, lang::Span where, std::string_view except = "");
+    std::optional<std::vector<Expr>> bind_attributes(const std::vector<lang::Binding>& given,
+                                                     net::PlaceIndex place, const Scope& scope,
+                                                     lang::Span where,
+                                                     std::string_view except = "");
     net::DurationDraft duration_of(const lang::Expr& e, const Scope& scope);
     net::DurationDraft distribution_of(const lang::Expr& e, const Scope& scope);
-    net::DurationDraft sample_distribution(const lang::Expr& e, const Scope& scope, net::DurationDraft out);
+    net::DurationDraft sample_distribution(const lang::Expr& e, const Scope& scope,
+                                           net::DurationDraft out);
     std::optional<motion::BoundCall> bind_call(const lang::Expr& call, const Scope& scope);
-    void bind_arguments(const lang::Expr& call, const motion::MovementSignature& signature, const Scope& scope,
-                        motion::BoundCall& out);
+    void bind_arguments(const lang::Expr& call, const motion::MovementSignature& signature,
+                        const Scope& scope, motion::BoundCall& out);
     void check_stand_in_call(const lang::Expr& call, const Scope& scope);
-    std::optional<motion::ArgumentValue> bind_argument(const lang::Expr& value, const motion::Parameter& parameter,
+    std::optional<motion::ArgumentValue> bind_argument(const lang::Expr& value,
+                                                       const motion::Parameter& parameter,
                                                        const Scope& scope, motion::BoundCall& out);
     Term movement_value(const lang::Expr& e, const lang::Path& path, const Scope& scope);
     void complete_transitions();
     void complete_transition(std::size_t index);
     void complete_arcs(std::size_t index, Locals& locals);
     std::optional<net::PlaceIndex> place_of(const lang::Path& path, const Scope& scope);
-    void bind_patterns(const lang::Arc& arc, Locals& locals, const Scope& scope, net::ArcDraft& out);
+    void bind_patterns(const lang::Arc& arc, Locals& locals, const Scope& scope,
+                       net::ArcDraft& out);
     void complete_rendezvous();
     void complete_events();
     void complete_refinements();
@@ -273,14 +299,15 @@ class Elaboration {
     std::vector<Element<lang::End>> ends_;  // one per formula list
     std::vector<std::pair<const lang::EventFile*, Scope>> event_files_;
     std::vector<std::pair<const lang::Block*, Scope>> blocks_;
-    std::map<std::pair<std::uint32_t, std::string>, Term> cast_;  // by file and name, added on demand
+    std::map<std::pair<std::uint32_t, std::string>, Term>
+        cast_;  // by file and name, added on demand
     std::map<std::string, lang::Span> cast_where_;
     std::map<NodeKey, std::uint32_t> enumerations_;
 };
 
 // Says for a while what is being looked at, for messages.
 class About {
-   public:
+ public:
     About(Elaboration& elaboration, std::string element, lang::Span statement)
         : elaboration_(elaboration),
           element_(std::exchange(elaboration.element_, std::move(element))),
@@ -292,7 +319,7 @@ class About {
     About(const About&) = delete;
     About& operator=(const About&) = delete;
 
-   private:
+ private:
     Elaboration& elaboration_;
     std::string element_;
     lang::Span statement_;

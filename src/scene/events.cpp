@@ -24,7 +24,8 @@ std::vector<WordAt> words_of(std::string_view line) {
             continue;
         }
         const std::size_t begin = i;
-        while (i < line.size() && line[i] != ' ' && line[i] != '\t' && line[i] != '\r' && line[i] != '#') {
+        while (i < line.size() && line[i] != ' ' && line[i] != '\t' && line[i] != '\r' &&
+               line[i] != '#') {
             ++i;
         }
         words.push_back({line.substr(begin, i - begin), column_of(line, begin)});
@@ -41,7 +42,8 @@ std::optional<Rational> decimal(std::string_view text) {
             point = true;
             continue;
         }
-        if (c < '0' || c > '9' || digits > 900'000'000'000'000'000 || denominator > 100'000'000'000'000'000) {
+        if (c < '0' || c > '9' || digits > 900'000'000'000'000'000 ||
+            denominator > 100'000'000'000'000'000) {
             return std::nullopt;
         }
         digits = digits * 10 + (c - '0');
@@ -57,7 +59,7 @@ struct Line {
 };
 
 class LineParser {
-   public:
+ public:
     LineParser(std::string_view filename, std::uint32_t number, std::span<const std::string> names)
         : filename_(filename), number_(number), names_(names) {}
 
@@ -69,7 +71,8 @@ class LineParser {
         if (words[0].text == "seed" && words.size() == 2) {
             const auto seed = decimal(words[1].text);
             if (!seed || !seed->whole()) {
-                return fail(words[1], "bad-event-line", "a seed is a whole number", "write `seed 7`");
+                return fail(words[1], "bad-event-line", "a seed is a whole number",
+                            "write `seed 7`");
             }
             return Line{.seed = static_cast<std::uint64_t>(seed->numerator)};
         }
@@ -88,17 +91,20 @@ class LineParser {
         LiveEvent event;
         if (words[1].text == "ticks") {
             if (!number->whole()) {
-                return fail(words[0], "bad-event-line", "ticks are whole", "write `1764000000 ticks go`");
+                return fail(words[0], "bad-event-line", "ticks are whole",
+                            "write `1764000000 ticks go`");
             }
             event.at = SimTime{number->numerator};
         } else {
             const auto q = lang::to_quantity(*number, words[1].text);
             if (!q || q->dimension != lang::dimension::kTime || q->pi_power != 0) {
-                return fail(words[1], "wrong-unit", "this is no unit of time", "use s, ms, min or ticks");
+                return fail(words[1], "wrong-unit", "this is no unit of time",
+                            "use s, ms, min or ticks");
             }
             const auto t = to_ticks(q->number);
             if (!t) {
-                return fail(words[0], "number-too-large", "this time does not fit", "choose an earlier one");
+                return fail(words[0], "number-too-large", "this time does not fit",
+                            "choose an earlier one");
             }
             event.at = t->time;
         }
@@ -106,12 +112,13 @@ class LineParser {
         return Line{.event = event};
     }
 
-   private:
+ private:
     SourceSpan where(const WordAt& word) const {
         return {filename_, number_, word.column, count_code_points(word.text)};
     }
 
-    Unexpected<Diagnostics> fail(const WordAt& word, std::string code, std::string message, std::string remedy) const {
+    Unexpected<Diagnostics> fail(const WordAt& word, std::string code, std::string message,
+                                 std::string remedy) const {
         Diagnostics list;
         list.push_back({.code = std::move(code),
                         .where = where(word),
@@ -143,7 +150,8 @@ class LineParser {
 
 }  // namespace
 
-EventList parse_event_list(std::string_view text, const std::string& filename, std::span<const std::string> names) {
+EventList parse_event_list(std::string_view text, const std::string& filename,
+                           std::span<const std::string> names) {
     EventList list;
     std::uint32_t number = 0;
     std::size_t at = 0;
@@ -183,12 +191,14 @@ std::vector<std::string> event_names(const net::Net& net) {
     return names;
 }
 
-Checked<std::optional<LiveEvent>> parse_live_event(std::string_view line, std::span<const std::string> names) {
+Checked<std::optional<LiveEvent>> parse_live_event(std::string_view line,
+                                                   std::span<const std::string> names) {
     PUP_TRY(Line parsed, LineParser("-", 1, names).parse(line));
     return parsed.event;
 }
 
-std::string write_event_list(const std::vector<run::OutsideEvent>& events, std::optional<std::uint64_t> seed,
+std::string write_event_list(const std::vector<run::OutsideEvent>& events,
+                             std::optional<std::uint64_t> seed,
                              std::span<const std::string> names) {
     std::string text = "# A session of puppetri run: replay it with --events.\n";
     if (seed) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Expressions: constants are folded exactly; what depends on data, counts or variables becomes an expression of the
-// kernel; what speaks of places, firings and figures becomes a formula.
+// Expressions: constants are folded exactly; what depends on data, counts or variables becomes an
+// expression of the kernel; what speaks of places, firings and figures becomes a formula.
 #include "elaboration.h"
 #include "puppetri/lang/types.h"
 
@@ -123,7 +123,8 @@ Term Elaboration::evaluate(const lang::Expr& e, const Scope& scope) {
         case ExprKind::kCountReady: {
             const Term place = resolve(e.path, scope);
             if (const auto* p = std::get_if<PlaceTerm>(&place)) {
-                const net::SlotKind kind = e.kind == ExprKind::kCount ? net::SlotKind::kCount : net::SlotKind::kReady;
+                const net::SlotKind kind =
+                    e.kind == ExprKind::kCount ? net::SlotKind::kCount : net::SlotKind::kReady;
                 return Expr::slot(net::slot(kind, p->place.value), {ValueKind::kInt});
             }
             wrong(e.path.span, "a place", place);
@@ -165,7 +166,8 @@ Term Elaboration::evaluate_unary(const lang::Expr& e, const Scope& scope) {
         }
         if (is_formula_like(term)) {
             auto f = as_formula(term, operand.span);
-            return f ? Term{net::Formula::unary(net::FormulaOp::kNot, std::move(*f))} : Term{Nothing{}};
+            return f ? Term{net::Formula::unary(net::FormulaOp::kNot, std::move(*f))}
+                     : Term{Nothing{}};
         }
     } else if (const Number* n = std::get_if<Number>(&term)) {
         return e.op == Op::kNegate ? negate(*n) : *n;
@@ -186,7 +188,8 @@ Term Elaboration::evaluate_binary(const lang::Expr& e, const Scope& scope) {
         return evaluate_logic(e, scope);
     }
     if (e.op == Op::kUntil || e.op == Op::kWeakUntil || e.op == Op::kRelease) {
-        error("wrong-type", e.span, "until and release stand in ltl and ctl rules only", "write `rule NAME ltl ...`");
+        error("wrong-type", e.span, "until and release stand in ltl and ctl rules only",
+              "write `rule NAME ltl ...`");
         return Nothing{};
     }
     Term result = evaluate(e.args[0].value, scope);
@@ -206,7 +209,8 @@ Term Elaboration::fold(const lang::Expr& e, Op op, const Term& a, const Term& b)
         return fold_numbers(e, op, *x, *y);
     }
     const bool dynamic = std::holds_alternative<Expr>(a) || std::holds_alternative<Expr>(b) ||
-                         std::holds_alternative<DatumTerm>(a) || std::holds_alternative<DatumTerm>(b);
+                         std::holds_alternative<DatumTerm>(a) ||
+                         std::holds_alternative<DatumTerm>(b);
     if ((op == Op::kEqual || op == Op::kNotEqual) && !dynamic) {
         Term equal = compare_things(e, a, b);
         if (op == Op::kEqual || is_nothing(equal)) {
@@ -217,7 +221,8 @@ Term Elaboration::fold(const lang::Expr& e, Op op, const Term& a, const Term& b)
         }
         return net::Formula::unary(net::FormulaOp::kNot, std::get<net::Formula>(std::move(equal)));
     }
-    // A plain zero or number beside a time of data is most likely a forgotten unit: the kernel says so.
+    // A plain zero or number beside a time of data is most likely a forgotten unit: the kernel says
+    // so.
     auto left = as_expr(a, e.args[0].value.span);
     auto right = as_expr(b, e.args.back().value.span);
     if (!left || !right) {
@@ -273,7 +278,8 @@ Term Elaboration::compare_things(const lang::Expr& e, const Term& a, const Term&
             return x->text == std::get<Word>(b).text;
         }
     }
-    error("wrong-type", e.span, "cannot compare " + describe(a) + " and " + describe(b), "compare things of one kind");
+    error("wrong-type", e.span, "cannot compare " + describe(a) + " and " + describe(b),
+          "compare things of one kind");
     return Nothing{};
 }
 
@@ -307,7 +313,8 @@ Term Elaboration::evaluate_logic(const lang::Expr& e, const Scope& scope) {
             if (!f) {
                 return Nothing{};
             }
-            result = result ? net::Formula::binary(op, std::move(*result), std::move(*f)) : std::move(*f);
+            result = result ? net::Formula::binary(op, std::move(*result), std::move(*f))
+                            : std::move(*f);
         }
         return std::move(*result);
     }
@@ -317,7 +324,8 @@ Term Elaboration::evaluate_logic(const lang::Expr& e, const Scope& scope) {
         if (!x) {
             return Nothing{};
         }
-        result = result ? apply(kernel_op(e.op), {std::move(*result), std::move(*x)}, e.span) : std::move(x);
+        result = result ? apply(kernel_op(e.op), {std::move(*result), std::move(*x)}, e.span)
+                        : std::move(x);
         if (!result) {
             return Nothing{};
         }
@@ -346,7 +354,8 @@ Term Elaboration::evaluate_tuple(const lang::Expr& e, const Scope& scope) {
             }
         }
         if (i > 0 && value.dimension != point.dimension) {
-            error("wrong-unit", e.args[i].value.span, "the coordinates of a point need one unit", "write (x, y, z) m");
+            error("wrong-unit", e.args[i].value.span, "the coordinates of a point need one unit",
+                  "write (x, y, z) m");
             return Nothing{};
         }
         point.dimension = value.dimension;
@@ -356,12 +365,14 @@ Term Elaboration::evaluate_tuple(const lang::Expr& e, const Scope& scope) {
 }
 
 std::optional<Expr> Elaboration::apply(ExprOp op, std::vector<Expr> operands, lang::Span where) {
-    auto result = operands.size() == 1   ? Expr::unary(op, std::move(operands[0]))
-                  : operands.size() == 2 ? Expr::binary(op, std::move(operands[0]), std::move(operands[1]))
-                                         : Expr::conditional(std::move(operands[0]), std::move(operands[1]),
-                                                             std::move(operands[2]));
+    auto result = operands.size() == 1 ? Expr::unary(op, std::move(operands[0]))
+                  : operands.size() == 2
+                      ? Expr::binary(op, std::move(operands[0]), std::move(operands[1]))
+                      : Expr::conditional(std::move(operands[0]), std::move(operands[1]),
+                                          std::move(operands[2]));
     if (!result) {
-        error("wrong-type", where, result.error().message, "make both sides values of one kind; times need a unit");
+        error("wrong-type", where, result.error().message,
+              "make both sides values of one kind; times need a unit");
         return std::nullopt;
     }
     return std::move(*result);
@@ -385,12 +396,14 @@ std::optional<Expr> Elaboration::as_expr(const Term& term, lang::Span where) {
         if (n->plain() || n->dimension == lang::dimension::kAngle) {
             return n->is_integer() ? Expr::integer(n->exact.numerator) : Expr::real(n->value);
         }
-        error("wrong-unit", where, "data have no unit but time, and this is " + lang::to_text(n->dimension),
+        error("wrong-unit", where,
+              "data have no unit but time, and this is " + lang::to_text(n->dimension),
               "divide it by a unit: `x / 1 m`");
         return std::nullopt;
     }
     if (const auto* d = std::get_if<DatumTerm>(&term)) {
-        return Expr::slot(net::slot(net::SlotKind::kDatum, d->datum.value), draft().data[d->datum.value].type);
+        return Expr::slot(net::slot(net::SlotKind::kDatum, d->datum.value),
+                          draft().data[d->datum.value].type);
     }
     if (const auto* v = std::get_if<EnumTerm>(&term)) {
         return Expr::enumerator(v->enumeration, v->ordinal);
@@ -403,9 +416,11 @@ std::optional<Expr> Elaboration::as_expr(const Term& term, lang::Span where) {
     }
     if (const auto* p = std::get_if<PlaceTerm>(&term)) {
         // A place as a statement: it has a token.
-        return apply(ExprOp::kGreaterEqual,
-                     {Expr::slot(net::slot(net::SlotKind::kCount, p->place.value), {ValueKind::kInt}), Expr::integer(1)},
-                     where);
+        return apply(
+            ExprOp::kGreaterEqual,
+            {Expr::slot(net::slot(net::SlotKind::kCount, p->place.value), {ValueKind::kInt}),
+             Expr::integer(1)},
+            where);
     }
     if (const auto* f = std::get_if<net::Formula>(&term)) {
         return expr_of_formula(*f, where);
@@ -420,7 +435,8 @@ std::optional<Expr> Elaboration::as_expr_of(const Term& term, ValueType type, la
         *n = in_time_unit(*n, where);
     }
     const Number* number = std::get_if<Number>(&fitted);
-    if (number != nullptr && type.kind == ValueKind::kTime && number->dimension != lang::dimension::kTime) {
+    if (number != nullptr && type.kind == ValueKind::kTime &&
+        number->dimension != lang::dimension::kTime) {
         wrong(where, "a time", fitted, "write it with a unit such as s");
         return std::nullopt;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Statements about the net: named states, operands of rules, final markings. A place is true while it has a token, a
-// transition when it fires, an event when it occurs.
+// Statements about the net: named states, operands of rules, final markings. A place is true while
+// it has a token, a transition when it fires, an event when it occurs.
 #include "elaboration.h"
 
 namespace puppetri::scene {
@@ -46,8 +46,10 @@ std::optional<Expr> Elaboration::expr_of_formula(const Formula& formula, lang::S
     for (std::size_t i = 0; i < formula.nodes.size(); ++i) {
         const Formula::Node& n = formula.nodes[i];
         const auto at_least = [&](net::SlotKind kind) {
-            return apply(ExprOp::kGreaterEqual,
-                         {Expr::slot(net::slot(kind, n.index), {ValueKind::kInt}), Expr::integer(n.count)}, where);
+            return apply(
+                ExprOp::kGreaterEqual,
+                {Expr::slot(net::slot(kind, n.index), {ValueKind::kInt}), Expr::integer(n.count)},
+                where);
         };
         switch (n.op) {
             case FormulaOp::kConstant:
@@ -75,7 +77,8 @@ std::optional<Expr> Elaboration::expr_of_formula(const Formula& formula, lang::S
                 values[i] = apply(ExprOp::kImplies, {*values[n.a], *values[n.b]}, where);
                 break;
             default:
-                error("not-a-value", where, "a guard or a value cannot ask for firings, events or figures",
+                error("not-a-value", where,
+                      "a guard or a value cannot ask for firings, events or figures",
                       "use places, counts and data here");
                 return std::nullopt;
         }
@@ -93,7 +96,8 @@ Formula Elaboration::state_formula(std::uint32_t index) {
     }
     About about(*this, "state " + state.path, state.node->span);
     if (state.known == StateElement::Known::kNow) {
-        error("state-cycle", state.node->span, "this state is defined by itself", "define it by places");
+        error("state-cycle", state.node->span, "this state is defined by itself",
+              "define it by places");
         return Formula::constant(false);
     }
     state.known = StateElement::Known::kNow;
@@ -106,7 +110,9 @@ Formula Elaboration::state_formula(std::uint32_t index) {
 
 Formula Elaboration::temporal_formula(const lang::Expr& e, const Scope& scope, bool linear) {
     using lang::Op;
-    const auto part = [&](std::size_t i) { return temporal_formula(e.args[i].value, scope, linear); };
+    const auto part = [&](std::size_t i) {
+        return temporal_formula(e.args[i].value, scope, linear);
+    };
     const auto until = [&](FormulaOp op, Formula a, Formula b) {
         return Formula::binary(op, std::move(a), std::move(b));
     };
@@ -115,7 +121,9 @@ Formula Elaboration::temporal_formula(const lang::Expr& e, const Scope& scope, b
     }
     if (e.kind == lang::ExprKind::kBinary) {
         if (e.op == Op::kAnd || e.op == Op::kOr || e.op == Op::kImplies) {
-            const FormulaOp op = e.op == Op::kAnd ? FormulaOp::kAnd : e.op == Op::kOr ? FormulaOp::kOr : FormulaOp::kImplies;
+            const FormulaOp op = e.op == Op::kAnd  ? FormulaOp::kAnd
+                                 : e.op == Op::kOr ? FormulaOp::kOr
+                                                   : FormulaOp::kImplies;
             Formula result = part(0);
             for (std::size_t i = 1; i < e.args.size(); ++i) {
                 result = Formula::binary(op, std::move(result), part(i));
@@ -124,7 +132,8 @@ Formula Elaboration::temporal_formula(const lang::Expr& e, const Scope& scope, b
         }
         if (e.op == Op::kUntil || e.op == Op::kWeakUntil || e.op == Op::kRelease) {
             if (!linear) {
-                error("wrong-type", e.span, "until needs a quantifier in a ctl rule", "write A(x until y) or E(x until y)");
+                error("wrong-type", e.span, "until needs a quantifier in a ctl rule",
+                      "write A(x until y) or E(x until y)");
                 return Formula::constant(false);
             }
             if (e.op == Op::kUntil) {
@@ -135,8 +144,9 @@ Formula Elaboration::temporal_formula(const lang::Expr& e, const Scope& scope, b
                                        Formula::unary(FormulaOp::kGlobally, part(0)));
             }
             // a R b: not (not a U not b)
-            return Formula::unary(FormulaOp::kNot, until(FormulaOp::kUntil, Formula::unary(FormulaOp::kNot, part(0)),
-                                                         Formula::unary(FormulaOp::kNot, part(1))));
+            return Formula::unary(FormulaOp::kNot,
+                                  until(FormulaOp::kUntil, Formula::unary(FormulaOp::kNot, part(0)),
+                                        Formula::unary(FormulaOp::kNot, part(1))));
         }
     }
     if (e.kind == lang::ExprKind::kCall && e.path.steps.size() == 1 && e.args.size() == 1) {
@@ -159,7 +169,8 @@ Formula Elaboration::temporal_formula(const lang::Expr& e, const Scope& scope, b
             }
         }
         const lang::Expr& inner = e.args[0].value;
-        if (!linear && (name == "A" || name == "E") && inner.kind == lang::ExprKind::kBinary && inner.op == Op::kUntil) {
+        if (!linear && (name == "A" || name == "E") && inner.kind == lang::ExprKind::kBinary &&
+            inner.op == Op::kUntil) {
             return until(name == "A" ? FormulaOp::kAllUntil : FormulaOp::kSomeUntil,
                          temporal_formula(inner.args[0].value, scope, linear),
                          temporal_formula(inner.args[1].value, scope, linear));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Calls inside expressions: functions of numbers, folded where their arguments are constant, and movements as values.
+// Calls inside expressions: functions of numbers, folded where their arguments are constant, and
+// movements as values.
 #include <cmath>
 
 #include "elaboration.h"
@@ -59,14 +60,15 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
         const std::string& name = e.path.steps[0].text;
         if (const Function* f = find_function(name)) {
             if (e.args.size() < static_cast<std::size_t>(f->operands)) {
-                error("missing-argument", e.span, name + " takes " + std::to_string(f->operands) + " arguments",
-                      "give all");
+                error("missing-argument", e.span,
+                      name + " takes " + std::to_string(f->operands) + " arguments", "give all");
                 return Nothing{};
             }
             const bool variadic = f->op == ExprOp::kMin || f->op == ExprOp::kMax;
             if (!variadic && e.args.size() > static_cast<std::size_t>(f->operands)) {
                 error("too-many-arguments", e.args.back().value.span,
-                      name + " takes " + std::to_string(f->operands) + " arguments", "remove this one");
+                      name + " takes " + std::to_string(f->operands) + " arguments",
+                      "remove this one");
                 return Nothing{};
             }
             return call_function(e, *f, scope);
@@ -76,7 +78,8 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
         }
         for (const motion::MovementSignature& m : motion::movement_library()) {
             if (m.name == name) {
-                error("wrong-type", e.path.span, name + " moves a whole figure and cannot be an argument",
+                error("wrong-type", e.path.span,
+                      name + " moves a whole figure and cannot be an argument",
                       "arguments are movements of arms, such as carry(ball)");
                 return Nothing{};
             }
@@ -133,7 +136,8 @@ Term Elaboration::call_function(const lang::Expr& e, const Function& f, const Sc
         for (std::size_t i = 1; i < terms.size(); ++i) {
             const Number& y = std::get<Number>(terms[i]);
             if (y.dimension != best.dimension) {
-                error("wrong-unit", e.args[i].value.span, "cannot compare different kinds of units", "give all the same");
+                error("wrong-unit", e.args[i].value.span, "cannot compare different kinds of units",
+                      "give all the same");
                 return Nothing{};
             }
             if ((compare(y, best) < 0) == (f.op == ExprOp::kMin)) {

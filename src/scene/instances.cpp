@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The tree of instances: every `use` and every `runs` makes one, every `for` is unrolled, and every statement gets its
-// full path and its entry in the draft. Statements are completed later, when all names are known.
+// The tree of instances: every `use` and every `runs` makes one, every `for` is unrolled, and every
+// statement gets its full path and its entry in the draft. Statements are completed later, when all
+// names are known.
 #include "elaboration.h"
 #include "puppetri/lang/types.h"
 
@@ -66,10 +67,11 @@ bool Elaboration::add_member(const Scope& scope, const lang::Name& name, Member 
     }
     const std::string shown = key;
     if (!instance.members.emplace(std::move(key), member).second) {
-        error("name-twice", name.span, "there is already something named " + shown + " here",
-              scope.loop != nullptr && name.index.empty()
-                  ? "in a `for`, give the name an index: " + name.text + "[" + scope.loop->name + "]"
-                  : "choose another name");
+        error(
+            "name-twice", name.span, "there is already something named " + shown + " here",
+            scope.loop != nullptr && name.index.empty()
+                ? "in a `for`, give the name an index: " + name.text + "[" + scope.loop->name + "]"
+                : "choose another name");
         return false;
     }
     return true;
@@ -85,7 +87,8 @@ std::optional<Declaration> Elaboration::find_declaration(const lang::Path& path,
             const bool fits = kind == "net"    ? d.net != nullptr
                               : kind == "type" ? d.net == nullptr
                                                : d.token_type != nullptr;
-            const bool missing = d.net == nullptr && d.enumeration == nullptr && d.token_type == nullptr;
+            const bool missing =
+                d.net == nullptr && d.enumeration == nullptr && d.token_type == nullptr;
             if (missing) {
                 return std::nullopt;
             }
@@ -104,22 +107,25 @@ std::optional<Declaration> Elaboration::find_declaration(const lang::Path& path,
     return std::nullopt;
 }
 
-std::uint32_t Elaboration::make_instance(const Declaration& net, std::string path, lang::Span where, Scope scope,
-                                         const std::vector<lang::Argument>& arguments, net::PlaceIndex refines) {
+std::uint32_t Elaboration::make_instance(const Declaration& net, std::string path, lang::Span where,
+                                         Scope scope, const std::vector<lang::Argument>& arguments,
+                                         net::PlaceIndex refines) {
     for (std::uint32_t i = scope.instance; i != kNoInstance; i = instances_[i].up) {
         if (instances_[i].net == net.net) {
             std::string ring = net.net->name.text;
             for (std::uint32_t k = scope.instance; k != i; k = instances_[k].up) {
                 ring = instances_[k].net->name.text + " contains " + ring;
             }
-            error("module-cycle", where, "net " + net.net->name.text + " contains itself: " + net.net->name.text +
-                                             " contains " + ring,
+            error("module-cycle", where,
+                  "net " + net.net->name.text + " contains itself: " + net.net->name.text +
+                      " contains " + ring,
                   "remove one of these uses; a net that goes on for ever is a loop of transitions");
             return kNoInstance;
         }
     }
     if (instances_.size() >= kMaxInstances) {
-        error("net-too-large", where, "more than " + std::to_string(kMaxInstances) + " instances of nets",
+        error("net-too-large", where,
+              "more than " + std::to_string(kMaxInstances) + " instances of nets",
               "use fewer, or smaller ranges of `for`");
         return kNoInstance;
     }
@@ -139,7 +145,8 @@ std::uint32_t Elaboration::make_instance(const Declaration& net, std::string pat
     return number;
 }
 
-void Elaboration::match_arguments(Instance& instance, const std::vector<lang::Argument>& arguments) {
+void Elaboration::match_arguments(Instance& instance,
+                                  const std::vector<lang::Argument>& arguments) {
     const std::vector<lang::Parameter>& parameters = instance.net->parameters;
     instance.arguments.assign(parameters.size(), nullptr);
     instance.values.assign(parameters.size(), {Instance::Bound::kNo, Nothing{}});
@@ -158,7 +165,8 @@ void Elaboration::match_arguments(Instance& instance, const std::vector<lang::Ar
             i = position++;
             if (i >= parameters.size()) {
                 error("too-many-arguments", a.value.span,
-                      net + " takes " + std::to_string(parameters.size()) + " arguments", "remove this one");
+                      net + " takes " + std::to_string(parameters.size()) + " arguments",
+                      "remove this one");
                 continue;
             }
         } else {
@@ -176,7 +184,8 @@ void Elaboration::match_arguments(Instance& instance, const std::vector<lang::Ar
             }
         }
         if (instance.arguments[i] != nullptr) {
-            error("repeated-argument", a.value.span, parameters[i].name.text + " is given twice", "remove one");
+            error("repeated-argument", a.value.span, parameters[i].name.text + " is given twice",
+                  "remove one");
             continue;
         }
         instance.arguments[i] = &a.value;
@@ -186,7 +195,8 @@ void Elaboration::match_arguments(Instance& instance, const std::vector<lang::Ar
     }
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         if (instance.arguments[i] == nullptr && !parameters[i].default_value) {
-            error("missing-argument", instance.where, net + " needs an argument " + parameters[i].name.text,
+            error("missing-argument", instance.where,
+                  net + " needs an argument " + parameters[i].name.text,
                   "give it: `" + parameters[i].name.text + ": ...`");
             instance.values[i].first = Instance::Bound::kYes;  // Nothing
         }
@@ -199,7 +209,8 @@ void Elaboration::expand(std::uint32_t number) {
 
 void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
     if (draft().places.size() + draft().transitions.size() + rules_.size() > kMaxElements) {
-        error("net-too-large", statement_, "more than " + std::to_string(kMaxElements) + " elements",
+        error("net-too-large", statement_,
+              "more than " + std::to_string(kMaxElements) + " elements",
               "use smaller ranges of `for`");
         return;
     }
@@ -220,8 +231,10 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
         About about(*this, "event " + path, e.span);
         const auto index = static_cast<std::uint32_t>(draft().events.size());
         add_member(scope, e.name, {MemberKind::kEvent, index, e.is_public});
-        draft().events.push_back(
-            {.path = path, .caption = e.caption.text, .where = at(e.span), .consumed = e.is_consumed});
+        draft().events.push_back({.path = path,
+                                  .caption = e.caption.text,
+                                  .where = at(e.span),
+                                  .consumed = e.is_consumed});
         events_.push_back({&e, scope, path});
     }
     for (const lang::Place& p : body.places) {
@@ -246,7 +259,8 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
         About about(*this, "transition " + path, t.span);
         const auto index = static_cast<std::uint32_t>(draft().transitions.size());
         add_member(scope, t.name, {MemberKind::kTransition, index, t.is_public});
-        draft().transitions.push_back({.path = path, .caption = t.caption.text, .where = at(t.span)});
+        draft().transitions.push_back(
+            {.path = path, .caption = t.caption.text, .where = at(t.span)});
         transitions_.push_back({&t, scope, path});
     }
     for (const lang::State& s : body.states) {
@@ -315,7 +329,8 @@ void Elaboration::unroll(const lang::For& loop, const Scope& scope) {
             return;
         }
         if (*high - *low >= kMaxLoop) {
-            error("net-too-large", domain.span, "a `for` of more than " + std::to_string(kMaxLoop) + " turns",
+            error("net-too-large", domain.span,
+                  "a `for` of more than " + std::to_string(kMaxLoop) + " turns",
                   "use a smaller range");
             return;
         }

@@ -10,18 +10,19 @@ namespace {
 using lang::unknown_name;
 
 class Loader {
-   public:
+ public:
     explicit Loader(FileSource& source) : source_(source) {}
 
     Library load(const std::string& path) {
         if (const auto text = source_.read(path); text) {
             open(path, *text);
         } else {
-            library_.diagnostics.push_back({.code = "cannot-read",
-                                            .where = {.file = path},
-                                            .element = "file " + path,
-                                            .message = text.error().message,
-                                            .remedy = "look at the path and the rights of the file"});
+            library_.diagnostics.push_back(
+                {.code = "cannot-read",
+                 .where = {.file = path},
+                 .element = "file " + path,
+                 .message = text.error().message,
+                 .remedy = "look at the path and the rights of the file"});
             library_.readable = false;
             return std::move(library_);
         }
@@ -36,7 +37,7 @@ class Loader {
         return std::move(library_);
     }
 
-   private:
+ private:
     std::uint32_t open(const std::string& path, const std::string& text) {
         const auto number = static_cast<std::uint32_t>(library_.files.size());
         lang::Parsed parsed = lang::parse(text, path, number);
@@ -63,7 +64,8 @@ class Loader {
         return number;
     }
 
-    void declare(std::map<std::string, Declaration>& names, const lang::Name& name, const Declaration& d) {
+    void declare(std::map<std::string, Declaration>& names, const lang::Name& name,
+                 const Declaration& d) {
         if (!names.emplace(name.text, d).second) {
             library_.diagnostics.push_back({.code = "name-twice",
                                             .where = library_.where(name.span),
@@ -83,11 +85,12 @@ class Loader {
             }
             const auto text = source_.read(path);
             if (!text) {
-                library_.diagnostics.push_back({.code = "cannot-read",
-                                                .where = library_.where(import.path_span),
-                                                .element = "import of " + path,
-                                                .message = text.error().message,
-                                                .remedy = "the path is relative to this file; look at its spelling"});
+                library_.diagnostics.push_back(
+                    {.code = "cannot-read",
+                     .where = library_.where(import.path_span),
+                     .element = "import of " + path,
+                     .message = text.error().message,
+                     .remedy = "the path is relative to this file; look at its spelling"});
                 imported_.back().push_back(kMissing);
                 continue;
             }
@@ -100,11 +103,12 @@ class Loader {
             const std::string path = source_.resolve(library_.files[file].filename, events.path);
             const auto text = source_.read(path);
             if (!text) {
-                library_.diagnostics.push_back({.code = "cannot-read",
-                                                .where = library_.where(events.span),
-                                                .element = "events from " + path,
-                                                .message = text.error().message,
-                                                .remedy = "the path is relative to this file; look at its spelling"});
+                library_.diagnostics.push_back(
+                    {.code = "cannot-read",
+                     .where = library_.where(events.span),
+                     .element = "events from " + path,
+                     .message = text.error().message,
+                     .remedy = "the path is relative to this file; look at its spelling"});
                 continue;
             }
             library_.texts[file][events.path] = *text;
@@ -133,7 +137,8 @@ class Loader {
                     continue;
                 }
                 if (found == nullptr) {
-                    library_.diagnostics.push_back(unknown_name(library_.where(name.span), "net", name.text, known,
+                    library_.diagnostics.push_back(unknown_name(library_.where(name.span), "net",
+                                                                name.text, known,
                                                                 "import from " + imports[i].path));
                     declare(library_.visible[file], name, {});
                     continue;
@@ -147,12 +152,14 @@ class Loader {
     FileSource& source_;
     Library library_;
     std::map<std::string, std::uint32_t> numbers_;
-    std::vector<bool> broken_;  // by file: it has errors of its own
+    std::vector<bool> broken_;                          // by file: it has errors of its own
     std::vector<std::vector<std::uint32_t>> imported_;  // by file and import: the file's number
 };
 
 }  // namespace
 
-Library load_library(FileSource& source, const std::string& path) { return Loader(source).load(path); }
+Library load_library(FileSource& source, const std::string& path) {
+    return Loader(source).load(path);
+}
 
 }  // namespace puppetri::scene

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// All files of a scene: the one that was asked for (number 0) and what it imports, each parsed once, and which names of
-// nets and types each can see.
+// All files of a scene: the one that was asked for (number 0) and what it imports, each parsed
+// once, and which names of nets and types each can see.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -14,8 +14,8 @@
 
 namespace puppetri::scene {
 
-// Something that a file declares and others may import. One pointer is set, or none: then it is missing, and that has
-// been told.
+// Something that a file declares and others may import. One pointer is set, or none: then it is
+// missing, and that has been told.
 struct Declaration {
     std::uint32_t file = 0;  // where it is declared
     const lang::Net* net = nullptr;
@@ -26,17 +26,18 @@ struct Declaration {
 struct Library {
     std::deque<lang::File> files;  // by number, as in lang::Span::file; addresses stay
     std::vector<std::map<std::string, Declaration>> visible;  // by file
-    std::vector<std::map<std::string, std::string>> texts;    // by file: of its event files, by the path as written
-    Diagnostics diagnostics;                                  // of reading and parsing
-    bool readable = true;  // all files are there and have been parsed without errors
+    std::vector<std::map<std::string, std::string>>
+        texts;                // by file: of its event files, by the path as written
+    Diagnostics diagnostics;  // of reading and parsing
+    bool readable = true;     // all files are there and have been parsed without errors
 
     SourceSpan where(lang::Span span) const {
         return span.file < files.size() ? files[span.file].where(span) : SourceSpan{};
     }
 };
 
-// Reads and parses everything that `path` needs. Files that import each other are fine; nets that contain each other
-// are found where they are instantiated.
+// Reads and parses everything that `path` needs. Files that import each other are fine; nets that
+// contain each other are found where they are instantiated.
 Library load_library(FileSource& source, const std::string& path);
 
 }  // namespace puppetri::scene

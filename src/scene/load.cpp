@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Loading: read and parse all files, elaborate, compile, and give either a whole scene or every reason why not.
+// Loading: read and parse all files, elaborate, compile, and give either a whole scene or every
+// reason why not.
 #include <algorithm>
 
 #include "elaboration.h"
@@ -23,7 +24,8 @@ void Elaboration::read_header() {
     if (header.pace) {
         if (const auto beat = constant_time(header.pace, {}, "the pace")) {
             if (beat->ticks <= 0) {
-                error("out-of-range", header.pace.span, "a beat takes some time", "write `pace 1 s`");
+                error("out-of-range", header.pace.span, "a beat takes some time",
+                      "write `pace 1 s`");
             } else {
                 scene.beat = *beat;
             }
@@ -41,8 +43,10 @@ void Elaboration::read_header() {
             }
             break;
         case lang::HorizonKind::kFirings:
-            if (const auto firings = constant_integer(header.horizon, {}, "the number of firings")) {
-                scene.horizon.firings = static_cast<std::uint64_t>(std::max<std::int64_t>(*firings, 0));
+            if (const auto firings =
+                    constant_integer(header.horizon, {}, "the number of firings")) {
+                scene.horizon.firings =
+                    static_cast<std::uint64_t>(std::max<std::int64_t>(*firings, 0));
             }
             break;
     }
@@ -114,9 +118,9 @@ void sort_by_position(Diagnostics& list, const Library& library) {
     };
     std::stable_sort(list.begin(), list.end(), [&](const Diagnostic& a, const Diagnostic& b) {
         const std::size_t x = rank(a), y = rank(b);
-        return x != y                           ? x < y
-               : a.where.line != b.where.line   ? a.where.line < b.where.line
-                                                : a.where.column < b.where.column;
+        return x != y                         ? x < y
+               : a.where.line != b.where.line ? a.where.line < b.where.line
+                                              : a.where.column < b.where.column;
     });
 }
 
@@ -130,8 +134,9 @@ void append(Diagnostics& to, Diagnostics from) {
 }
 
 bool told_already(const Diagnostics& list, const Diagnostic& d) {
-    return std::any_of(list.begin(), list.end(),
-                       [&](const Diagnostic& known) { return known.code == d.code && known.where == d.where; });
+    return std::any_of(list.begin(), list.end(), [&](const Diagnostic& known) {
+        return known.code == d.code && known.where == d.where;
+    });
 }
 
 // `also_unused`: nets that nobody instantiates are tried alone.
@@ -145,7 +150,8 @@ Loaded load_all(FileSource& files, const std::string& path, bool also_unused) {
     }
     const lang::File& root = library.files[0];
     const bool is_library = root.header.scene_span.begin == root.header.scene_span.end &&
-                            root.body.places.empty() && root.body.uses.empty() && !root.body.nets.empty();
+                            root.body.places.empty() && root.body.uses.empty() &&
+                            !root.body.nets.empty();
     Elaboration scene(library);
     if (is_library && !also_unused) {
         out.diagnostics.push_back({.code = "no-scene",
@@ -198,8 +204,10 @@ Loaded load_all(FileSource& files, const std::string& path, bool also_unused) {
 }  // namespace
 
 std::optional<SimTime> FrameRate::time_of_frame(std::int64_t frame) const {
-    // frame * denominator * ticks / numerator; numerator and denominator are small, so 128 bits hold it.
-    const auto seconds = multiply(Rational{frame}, make_rational(denominator, numerator).value_or(Rational{}));
+    // frame * denominator * ticks / numerator; numerator and denominator are small, so 128 bits
+    // hold it.
+    const auto seconds =
+        multiply(Rational{frame}, make_rational(denominator, numerator).value_or(Rational{}));
     if (!seconds) {
         return std::nullopt;
     }

@@ -20,7 +20,8 @@ std::string list(const std::vector<std::string>& items, const char* between) {
 }
 
 struct Arcs {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> pre, post;  // (place, transition): weight
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> pre,
+        post;  // (place, transition): weight
     std::vector<std::string> tests;
 };
 
@@ -50,7 +51,8 @@ Arcs arcs_of(const net::NetDraft& draft) {
                 out.pre[{a.place.value, t}] += a.weight;
             } else {
                 const std::string weight = a.weight == 1 ? "" : std::to_string(a.weight) + " ";
-                out.tests.push_back(transition.path + " " + word_of(a.kind) + weight + draft.places[a.place.value].path);
+                out.tests.push_back(transition.path + " " + word_of(a.kind) + weight +
+                                    draft.places[a.place.value].path);
             }
         }
         for (const net::OutputDraft& a : transition.outputs) {
@@ -98,8 +100,9 @@ std::string to_mathematics(const net::NetDraft& written) {
     for (const auto& [weight, pairs] : weights) {
         weighted.push_back(list(pairs, " = ") + " = " + std::to_string(weight));
     }
-    std::string text = "P = {" + list(places, ", ") + "}\nT = {" + list(transitions, ", ") + "}\nF = {" +
-                       list(flow, ", ") + "}\n" + list(weighted, "; ") + "\nM0 = [" + marking + "]^T\n";
+    std::string text = "P = {" + list(places, ", ") + "}\nT = {" + list(transitions, ", ") +
+                       "}\nF = {" + list(flow, ", ") + "}\n" + list(weighted, "; ") + "\nM0 = [" +
+                       marking + "]^T\n";
 
     std::size_t name_width = 0;
     for (const std::string& p : places) {
@@ -120,7 +123,9 @@ std::string to_mathematics(const net::NetDraft& written) {
             const std::int64_t change = (given == arcs.post.end() ? 0 : given->second) -
                                         (taken == arcs.pre.end() ? 0 : taken->second);
             const std::string entry = std::to_string(change);
-            text += "  " + std::string(entry.size() < widths[t] ? widths[t] - entry.size() : 0, ' ') + entry;
+            text += "  " +
+                    std::string(entry.size() < widths[t] ? widths[t] - entry.size() : 0, ' ') +
+                    entry;
         }
         text += "\n";
     }

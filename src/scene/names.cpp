@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Names: what a path stands for where it stands. The first step is looked up from the inside outwards (loop variables,
-// variables of the statement, parameters, members of the net, types and cast of the file); each further step is asked of
-// what the steps before it stand for.
+// Names: what a path stands for where it stands. The first step is looked up from the inside
+// outwards (loop variables, variables of the statement, parameters, members of the net, types and
+// cast of the file); each further step is asked of what the steps before it stand for.
 #include "elaboration.h"
 #include "puppetri/lang/types.h"
 
@@ -33,9 +33,11 @@ Term Elaboration::resolve(const lang::Path& path, const Scope& scope) {
     if (!found) {
         const Instance& instance = instances_[scope.instance];
         const std::string& name = path.steps[0].text;
-        if (instance.net != nullptr && instances_[0].net == nullptr && instances_[0].members.count(name) != 0) {
+        if (instance.net != nullptr && instances_[0].net == nullptr &&
+            instances_[0].members.count(name) != 0) {
             error("unknown-name", path.steps[0].span,
-                  "net " + instance.net->name.text + " does not know " + name + ", which belongs to the scene",
+                  "net " + instance.net->name.text + " does not know " + name +
+                      ", which belongs to the scene",
                   "give it to the net as a parameter");
         } else {
             unknown(path.steps[0].span, "name", name, names_in(scope));
@@ -92,7 +94,8 @@ std::optional<Term> Elaboration::resolve_first(const lang::Name& name, const Sco
         }
     }
     const auto& visible = library_.visible[name.span.file];
-    if (const auto found = visible.find(name.text); found != visible.end() && found->second.enumeration != nullptr) {
+    if (const auto found = visible.find(name.text);
+        found != visible.end() && found->second.enumeration != nullptr) {
         return EnumerationTerm{enumeration_index(*found->second.enumeration)};
     }
     for (const auto& [text, d] : visible) {
@@ -152,16 +155,19 @@ Term Elaboration::resolve_next(const Term& before, const lang::Name& name, const
             }
             known.push_back(parameter);
         }
-        const auto member = instance.members.find(name.index.empty() ? name.text : key_of(name, scope));
+        const auto member =
+            instance.members.find(name.index.empty() ? name.text : key_of(name, scope));
         if (member == instance.members.end()) {
             for (const auto& [key, m] : instance.members) {
                 known.push_back(key);
             }
-            unknown(name.span, "member of " + (instance.path.empty() ? "the scene" : instance.path), name.text, known);
+            unknown(name.span, "member of " + (instance.path.empty() ? "the scene" : instance.path),
+                    name.text, known);
             return Nothing{};
         }
         if (!member->second.is_public && !scope.sees_all && in != scope.instance) {
-            error("not-public", name.span, name.text + " belongs to net " + instance.net->name.text + " alone",
+            error("not-public", name.span,
+                  name.text + " belongs to net " + instance.net->name.text + " alone",
                   "write `public` before its declaration there");
             return Nothing{};
         }
@@ -186,7 +192,8 @@ Term Elaboration::resolve_next(const Term& before, const lang::Name& name, const
         if (is_one_of(kPhases, name.text)) {
             const std::string subject = scene.play.cast.actors[limb->actor.value].name + "." +
                                         std::string(motion::name_of(limb->limb));
-            return net::Formula::host(host_atom(net::HostAtom::Kind::kPhase, subject, name.text, name.span));
+            return net::Formula::host(
+                host_atom(net::HostAtom::Kind::kPhase, subject, name.text, name.span));
         }
         unknown(name.span, "phase", name.text, {std::begin(kPhases), std::end(kPhases)});
         return Nothing{};
@@ -195,10 +202,12 @@ Term Elaboration::resolve_next(const Term& before, const lang::Name& name, const
         if (name.text == "holder") {
             return HolderOfTerm{prop->prop};
         }
-        unknown(name.span, "property of " + scene.play.cast.props[prop->prop.value].name, name.text, {"holder"});
+        unknown(name.span, "property of " + scene.play.cast.props[prop->prop.value].name, name.text,
+                {"holder"});
         return Nothing{};
     }
-    error("no-member", name.span, describe(before) + " has no " + name.text, "remove ." + name.text);
+    error("no-member", name.span, describe(before) + " has no " + name.text,
+          "remove ." + name.text);
     return Nothing{};
 }
 
@@ -230,8 +239,8 @@ std::vector<std::string> Elaboration::names_in(const Scope& scope) {
     return names;
 }
 
-net::HostAtomIndex Elaboration::host_atom(net::HostAtom::Kind kind, std::string subject, std::string value,
-                                          lang::Span where) {
+net::HostAtomIndex Elaboration::host_atom(net::HostAtom::Kind kind, std::string subject,
+                                          std::string value, lang::Span where) {
     std::vector<net::HostAtom>& atoms = draft().host_atoms;
     for (std::size_t i = 0; i < atoms.size(); ++i) {
         if (atoms[i].kind == kind && atoms[i].subject == subject && atoms[i].value == value) {
@@ -257,8 +266,9 @@ net::EventIndex Elaboration::movement_event(net::PlaceIndex place, const lang::N
         }
     }
     const net::EventIndex event{static_cast<std::uint32_t>(draft().events.size())};
-    draft().events.push_back(
-        {.path = element.path + "." + name.text, .where = at(element.node->span), .outside = false});
+    draft().events.push_back({.path = element.path + "." + name.text,
+                              .where = at(element.node->span),
+                              .outside = false});
     events_.push_back({nullptr, element.scope, draft().events.back().path});
     element.raises.push_back({name.text, event});
     return event;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parameters of nets: their types, and their values, bound when somebody first asks. So instances may name each other in
-// any order, and a ring of defaults is found instead of followed.
+// Parameters of nets: their types, and their values, bound when somebody first asks. So instances
+// may name each other in any order, and a ring of defaults is found instead of followed.
 #include "elaboration.h"
 #include "puppetri/lang/types.h"
 
@@ -12,14 +12,13 @@ struct QuantityType {
     lang::Dimension dimension;
 };
 constexpr QuantityType kQuantities[] = {
-    {"real", lang::dimension::kNone},       {"time", lang::dimension::kTime},
-    {"length", lang::dimension::kLength},   {"angle", lang::dimension::kAngle},
-    {"speed", lang::dimension::kSpeed},     {"mass", lang::dimension::kMass},
+    {"real", lang::dimension::kNone},     {"time", lang::dimension::kTime},
+    {"length", lang::dimension::kLength}, {"angle", lang::dimension::kAngle},
+    {"speed", lang::dimension::kSpeed},   {"mass", lang::dimension::kMass},
     {"number", lang::dimension::kNone},
 };
-const char* const kOthers[] = {"actor", "prop",     "set",   "int",        "bool",
-                               "side",  "movement", "point", "place",      "transition",
-                               "event", "text"};
+const char* const kOthers[] = {"actor",    "prop",  "set",   "int",        "bool",  "side",
+                               "movement", "point", "place", "transition", "event", "text"};
 
 std::vector<std::string> type_names() {
     std::vector<std::string> names;
@@ -65,7 +64,8 @@ bool is_thing_of(std::string_view type, const Term& value) {
 }
 
 std::string with_article(std::string_view type) {
-    const bool vowel = !type.empty() && std::string_view("aeiou").find(type[0]) != std::string_view::npos;
+    const bool vowel =
+        !type.empty() && std::string_view("aeiou").find(type[0]) != std::string_view::npos;
     return (vowel ? "an " : "a ") + std::string(type);
 }
 
@@ -79,22 +79,26 @@ Term Elaboration::parameter_value(std::uint32_t number, std::size_t index) {
         return value;
     }
     const lang::Expr* argument = instance.arguments[index];
-    About about(*this, "parameter " + parameter.name.text + " of " + (instance.path.empty() ? instance.net->name.text : instance.path),
+    About about(*this,
+                "parameter " + parameter.name.text + " of " +
+                    (instance.path.empty() ? instance.net->name.text : instance.path),
                 argument != nullptr ? argument->span : parameter.span);
     if (bound == Instance::Bound::kNow) {
         error("parameter-cycle", argument != nullptr ? argument->span : parameter.span,
-              "its value depends on itself", "give one of the parameters in the ring a value of its own");
+              "its value depends on itself",
+              "give one of the parameters in the ring a value of its own");
         bound = Instance::Bound::kYes;
         return Nothing{};
     }
     bound = Instance::Bound::kNow;
     Term result = Nothing{};
     if (argument != nullptr) {
-        result = fit_parameter(parameter, evaluate(*argument, instance.argument_scope), argument->span,
-                               {.instance = number});
+        result = fit_parameter(parameter, evaluate(*argument, instance.argument_scope),
+                               argument->span, {.instance = number});
     } else if (parameter.default_value) {
         const Scope own{.instance = number};
-        result = fit_parameter(parameter, evaluate(parameter.default_value, own), parameter.default_value.span, own);
+        result = fit_parameter(parameter, evaluate(parameter.default_value, own),
+                               parameter.default_value.span, own);
     }
     if (bound == Instance::Bound::kYes) {
         return Nothing{};  // the ring was found below
@@ -104,7 +108,8 @@ Term Elaboration::parameter_value(std::uint32_t number, std::size_t index) {
     return result;
 }
 
-Term Elaboration::fit_parameter(const lang::Parameter& parameter, Term value, lang::Span where, const Scope& scope) {
+Term Elaboration::fit_parameter(const lang::Parameter& parameter, Term value, lang::Span where,
+                                const Scope& scope) {
     if (is_nothing(value)) {
         return value;
     }
@@ -120,8 +125,9 @@ Term Elaboration::fit_parameter(const lang::Parameter& parameter, Term value, la
         if (n != nullptr && number != nullptr && n->dimension == lang::dimension::kTime) {
             *number = in_time_unit(*number, where);
         }
-        const bool same = value.index() == standard.index() &&
-                          (n == nullptr || (number != nullptr && n->dimension == number->dimension));
+        const bool same =
+            value.index() == standard.index() &&
+            (n == nullptr || (number != nullptr && n->dimension == number->dimension));
         if (!same) {
             wrong(where, describe(standard) + " (as its default is)", value);
             return is_nothing(standard) ? value : Term{Nothing{}};
@@ -129,21 +135,26 @@ Term Elaboration::fit_parameter(const lang::Parameter& parameter, Term value, la
         return value;
     }
     if (type.kind == lang::ExprKind::kRange) {
-        const auto low = constant_integer(type.args[0].value, {.instance = scope.instance}, "the range of a parameter");
-        const auto high = constant_integer(type.args[1].value, {.instance = scope.instance}, "the range of a parameter");
+        const auto low = constant_integer(type.args[0].value, {.instance = scope.instance},
+                                          "the range of a parameter");
+        const auto high = constant_integer(type.args[1].value, {.instance = scope.instance},
+                                           "the range of a parameter");
         if (number == nullptr || !number->is_integer()) {
             wrong(where, "a whole number", value);
             return Nothing{};
         }
         if (low && high && (number->exact.numerator < *low || number->exact.numerator > *high)) {
-            error("out-of-range", where, "the value " + std::to_string(number->exact.numerator) + " is outside " + lang::to_text(type),
+            error("out-of-range", where,
+                  "the value " + std::to_string(number->exact.numerator) + " is outside " +
+                      lang::to_text(type),
                   "choose one inside");
             return Nothing{};
         }
         return value;
     }
     if (type.kind != lang::ExprKind::kPath || type.path.steps.size() != 1) {
-        error("unknown-type", type.span, "this is not a type", "write one such as `actor`, `int` or `time`");
+        error("unknown-type", type.span, "this is not a type",
+              "write one such as `actor`, `int` or `time`");
         return Nothing{};
     }
     const std::string& name = type.path.steps[0].text;
@@ -154,7 +165,8 @@ Term Elaboration::fit_parameter(const lang::Parameter& parameter, Term value, la
             }
             if (number == nullptr || number->dimension != q.dimension) {
                 const std::string unit(lang::example_unit(q.dimension));
-                wrong(where, lang::to_text(q.dimension), value, unit.empty() ? "" : "write it with a unit such as " + unit);
+                wrong(where, lang::to_text(q.dimension), value,
+                      unit.empty() ? "" : "write it with a unit such as " + unit);
                 return Nothing{};
             }
             return value;
@@ -229,7 +241,8 @@ Number Elaboration::in_time_unit(const Number& n, lang::Span where) {
 }
 
 std::optional<ValueType> Elaboration::value_type(const lang::Expr& type, const Scope& scope,
-                                                 std::optional<Value>* low, std::optional<Value>* high) {
+                                                 std::optional<Value>* low,
+                                                 std::optional<Value>* high) {
     if (type.kind == lang::ExprKind::kRange && low != nullptr) {
         const Term a = evaluate(type.args[0].value, scope);
         const Term b = evaluate(type.args[1].value, scope);
@@ -270,7 +283,8 @@ std::optional<ValueType> Elaboration::value_type(const lang::Expr& type, const S
             }
         }
         const auto own = instances_[scope.instance].members.find(name);
-        if (own != instances_[scope.instance].members.end() && own->second.kind == MemberKind::kEnumeration) {
+        if (own != instances_[scope.instance].members.end() &&
+            own->second.kind == MemberKind::kEnumeration) {
             return ValueType{ValueKind::kEnum, own->second.index};
         }
         const auto& visible = library_.visible[type.span.file];

@@ -70,13 +70,15 @@ bool Session::slice(SimTime until) {
     run::Limits limits = limits_;
     limits.until = std::min(limits_.until, until);
     stop_ = player_.run(limits);
-    return stop_ == run::Stop::kLimit && player_.now() < limits_.until && player_.firings() < limits_.firings;
+    return stop_ == run::Stop::kLimit && player_.now() < limits_.until &&
+           player_.firings() < limits_.firings;
 }
 
 bool Session::advance_to(SimTime at) {
     slice(at);
     // At rest now; an event from outside may wake it.
-    return stop_ != run::Stop::kFault && player_.now() < limits_.until && player_.firings() < limits_.firings;
+    return stop_ != run::Stop::kFault && player_.now() < limits_.until &&
+           player_.firings() < limits_.firings;
 }
 
 void Session::run() {
@@ -91,12 +93,12 @@ void Session::run() {
 
 Checked<Performed> Session::finish() {
     if (!horizon_.given() && stop_ == run::Stop::kLimit && !interrupted_) {
-        return Unexpected(
-            Diagnostics{{.code = "no-horizon",
-                         .where = {.file = scene_.path},
-                         .element = "scene " + scene_.title,
-                         .message = "the net goes on for ever and the scene does not say when to stop",
-                         .remedy = "write `until 40 s` or `until frame 960` in the header, or give --for"}});
+        return Unexpected(Diagnostics{
+            {.code = "no-horizon",
+             .where = {.file = scene_.path},
+             .element = "scene " + scene_.title,
+             .message = "the net goes on for ever and the scene does not say when to stop",
+             .remedy = "write `until 40 s` or `until frame 960` in the header, or give --for"}});
     }
     Performed out;
     out.seed = options_.seed.value_or(scene_.seed);
@@ -105,7 +107,8 @@ Checked<Performed> Session::finish() {
     out.end = player_.now();
     if (stop_ == run::Stop::kDead || stop_ == run::Stop::kFinal) {
         // At rest: the horizon, if it is a time, else the end of the last movement.
-        out.end = horizon_.time && !interrupted_ ? *horizon_.time : std::max(player_.now(), last_end(stage_));
+        out.end = horizon_.time && !interrupted_ ? *horizon_.time
+                                                 : std::max(player_.now(), last_end(stage_));
     }
     if (stop_ == run::Stop::kFault) {
         out.fault = player_.fault();

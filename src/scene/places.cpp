@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Places: durations, disciplines, tokens, the movement they do, the net they run, the place they are.
+// Places: durations, disciplines, tokens, the movement they do, the net they run, the place they
+// are.
 #include "elaboration.h"
 #include "puppetri/lang/types.h"
 
@@ -32,7 +33,8 @@ void Elaboration::complete_places() {
         std::size_t end = i;
         while (!places_[end].node->same_as.empty()) {
             if (!ring.insert(static_cast<std::uint32_t>(end)).second) {
-                error("place-cycle", node.same_as.span, "these places are each other, and none is a place of its own",
+                error("place-cycle", node.same_as.span,
+                      "these places are each other, and none is a place of its own",
                       "remove `is` from one of them");
                 break;
             }
@@ -64,7 +66,8 @@ void Elaboration::complete_places() {
         if (!node.capacity) {
             out.capacity = itself.capacity;
         }
-        draft().fusions.push_back({{static_cast<std::uint32_t>(end)}, {static_cast<std::uint32_t>(i)}});
+        draft().fusions.push_back(
+            {{static_cast<std::uint32_t>(end)}, {static_cast<std::uint32_t>(i)}});
     }
 }
 
@@ -81,20 +84,24 @@ void Elaboration::complete_place(std::size_t i) {
             out.duration = duration_of(node.takes.value, scope);
             break;
         case lang::DurationKind::kAuto:
-            out.duration = net::DurationDraft{.kind = net::DurationKind::kAuto, .where = at(node.takes.span)};
+            out.duration =
+                net::DurationDraft{.kind = net::DurationKind::kAuto, .where = at(node.takes.span)};
             if (!node.does) {
-                error("auto-without-movement", node.takes.span, "auto asks a movement, and this place does none",
+                error("auto-without-movement", node.takes.span,
+                      "auto asks a movement, and this place does none",
                       "write a time, or `does` a movement");
                 out.duration.reset();
             }
             break;
         case lang::DurationKind::kOpen:
-            out.duration = net::DurationDraft{.kind = net::DurationKind::kOpen, .where = at(node.takes.span)};
+            out.duration =
+                net::DurationDraft{.kind = net::DurationKind::kOpen, .where = at(node.takes.span)};
             break;
         case lang::DurationKind::kAs:
             if (const auto sibling = place_of(node.takes.as, place.scope)) {
-                out.duration = net::DurationDraft{
-                    .kind = net::DurationKind::kAs, .sibling = *sibling, .where = at(node.takes.span)};
+                out.duration = net::DurationDraft{.kind = net::DurationKind::kAs,
+                                                  .sibling = *sibling,
+                                                  .where = at(node.takes.span)};
             }
             break;
     }
@@ -110,9 +117,10 @@ void Elaboration::complete_place(std::size_t i) {
             break;
         case lang::Discipline::kLeast:
         case lang::Discipline::kMost:
-            out.discipline =
-                node.discipline == lang::Discipline::kLeast ? net::Discipline::kLeast : net::Discipline::kMost;
-            if (auto key = as_expr(evaluate(node.discipline_key, scope), node.discipline_key.span)) {
+            out.discipline = node.discipline == lang::Discipline::kLeast ? net::Discipline::kLeast
+                                                                         : net::Discipline::kMost;
+            if (auto key =
+                    as_expr(evaluate(node.discipline_key, scope), node.discipline_key.span)) {
                 out.key = std::move(*key);
             }
             break;
@@ -121,13 +129,15 @@ void Elaboration::complete_place(std::size_t i) {
     if (node.capacity) {
         const auto k = constant_integer(node.capacity, place.scope, "how many a place holds");
         if (k && (*k < 1 || *k > 1'000'000'000)) {
-            error("out-of-range", node.capacity.span, "a place holds at least one token", "write 1 or more");
+            error("out-of-range", node.capacity.span, "a place holds at least one token",
+                  "write 1 or more");
         } else if (k) {
             out.capacity = static_cast<std::uint32_t>(*k);
         }
     }
     if (node.does && node.runs) {
-        error("does-and-runs", node.does.span, "a place either does a movement or runs a net", "remove one of them");
+        error("does-and-runs", node.does.span, "a place either does a movement or runs a net",
+              "remove one of them");
     } else if (node.does) {
         if (auto call = bind_call(node.does, scope)) {
             place.action = {static_cast<std::uint32_t>(scene.play.actions.size())};
@@ -144,17 +154,20 @@ void Elaboration::complete_tokens(std::size_t i) {
     const PlaceElement& place = places_[i];
     net::PlaceDraft& out = draft().places[i];
     for (const lang::InitialTokens& group : place.node->tokens) {
-        const auto count = group.count ? constant_integer(group.count, place.scope, "the number of tokens")
-                                       : std::optional<std::int64_t>(1);
+        const auto count = group.count
+                               ? constant_integer(group.count, place.scope, "the number of tokens")
+                               : std::optional<std::int64_t>(1);
         if (!count) {
             continue;
         }
         if (*count < 0 || *count > 1'000'000'000) {
-            error("out-of-range", group.span, "a place cannot begin with " + std::to_string(*count) + " tokens",
+            error("out-of-range", group.span,
+                  "a place cannot begin with " + std::to_string(*count) + " tokens",
                   "write 0 or more");
             continue;
         }
-        const auto attributes = bind_attributes(group.attributes, {static_cast<std::uint32_t>(i)}, place.scope, group.span);
+        const auto attributes = bind_attributes(group.attributes, {static_cast<std::uint32_t>(i)},
+                                                place.scope, group.span);
         if (!attributes || *count == 0) {
             continue;
         }
@@ -162,7 +175,8 @@ void Elaboration::complete_tokens(std::size_t i) {
         for (std::size_t k = 0; k < attributes->size(); ++k) {
             const Expr& value = (*attributes)[k];
             if (!value.is_literal()) {
-                error("not-constant", group.span, "the attributes of a token at the start must be known before the run",
+                error("not-constant", group.span,
+                      "the attributes of a token at the start must be known before the run",
                       "use numbers and parameters only");
                 break;
             }

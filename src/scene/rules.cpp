@@ -60,11 +60,13 @@ Formula Elaboration::moves_of(motion::ActorIndex actor) {
         bool begins = false;
         for (const net::OutputDraft& output : draft().transitions[i].outputs) {
             const net::ActionIndex action = places_[output.place.value].action;
-            begins = begins || (action.valid() && scene.play.actions[action.value].call.subject.actor == actor);
+            begins = begins || (action.valid() &&
+                                scene.play.actions[action.value].call.subject.actor == actor);
         }
         if (begins) {
             Formula fires = Formula::fires({i});
-            result = result ? Formula::binary(FormulaOp::kOr, std::move(*result), std::move(fires)) : std::move(fires);
+            result = result ? Formula::binary(FormulaOp::kOr, std::move(*result), std::move(fires))
+                            : std::move(fires);
         }
     }
     return result ? std::move(*result) : Formula::constant(false);
@@ -114,7 +116,8 @@ void Elaboration::complete_rule(const Element<lang::Rule>& rule) {
         case lang::RuleKind::kCtl:
         case lang::RuleKind::kLtl:
             for (const lang::Expr& operand : node.operands) {
-                out.operands.push_back(temporal_formula(operand, rule.scope, node.kind == lang::RuleKind::kLtl));
+                out.operands.push_back(
+                    temporal_formula(operand, rule.scope, node.kind == lang::RuleKind::kLtl));
             }
             break;
         default:
@@ -130,10 +133,12 @@ void Elaboration::complete_rule(const Element<lang::Rule>& rule) {
             if (k && *k < 0) {
                 error("out-of-range", node.bound.span, "a bound is 0 or more", "write 1 or more");
             }
-        } else if (const auto within = constant_time(node.bound, rule.scope, "the time of a rule")) {
+        } else if (const auto within =
+                       constant_time(node.bound, rule.scope, "the time of a rule")) {
             out.within = *within;
             if (within->ticks < 0) {
-                error("negative-time", node.bound.span, "the time of a rule is 0 or more", "write a later one");
+                error("negative-time", node.bound.span, "the time of a rule is 0 or more",
+                      "write a later one");
             }
         }
     }
@@ -145,7 +150,8 @@ void Elaboration::complete_rules() {
     for (const Element<lang::Rule>& rule : rules_) {
         About about(*this, "rule " + rule.path, rule.node->span);
         if (!names.insert(rule.path).second) {
-            error("name-twice", rule.node->name.span, "there is already a rule " + rule.path, "choose another name");
+            error("name-twice", rule.node->name.span, "there is already a rule " + rule.path,
+                  "choose another name");
         }
         complete_rule(rule);
     }
@@ -162,7 +168,8 @@ void Elaboration::complete_ends() {
         std::optional<Formula> any;
         for (const lang::Expr& e : end.node->formulas) {
             Formula f = formula_of(e, end.scope);
-            any = any ? Formula::binary(FormulaOp::kOr, std::move(*any), std::move(f)) : std::move(f);
+            any =
+                any ? Formula::binary(FormulaOp::kOr, std::move(*any), std::move(f)) : std::move(f);
         }
         if (any && !inside) {
             draft().finals.push_back({std::move(*any), at(end.node->span)});

@@ -29,13 +29,15 @@ void Elaboration::unknown(lang::Span where, std::string_view kind, std::string_v
     error(d.code, where, d.message, d.remedy);
 }
 
-void Elaboration::wrong(lang::Span where, const std::string& wanted, const Term& got, std::string remedy) {
+void Elaboration::wrong(lang::Span where, const std::string& wanted, const Term& got,
+                        std::string remedy) {
     if (is_nothing(got)) {
         return;
     }
     const Number* number = std::get_if<Number>(&got);
     error(number != nullptr ? "wrong-unit" : "wrong-type", where,
-          "this is " + describe(got) + " where " + wanted + " is wanted", remedy.empty() ? "write " + wanted + " here" : std::move(remedy));
+          "this is " + describe(got) + " where " + wanted + " is wanted",
+          remedy.empty() ? "write " + wanted + " here" : std::move(remedy));
 }
 
 }  // namespace puppetri::scene

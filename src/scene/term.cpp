@@ -32,7 +32,8 @@ double times_pi(double x, int pi_power) {
     return x;
 }
 
-Number from_exact(std::optional<Rational> exact, int pi_power, lang::Dimension dimension, double otherwise) {
+Number from_exact(std::optional<Rational> exact, int pi_power, lang::Dimension dimension,
+                  double otherwise) {
     if (!exact) {
         return from_double(otherwise, dimension);
     }
@@ -49,7 +50,9 @@ bool same_pi(const Number& a, const Number& b) {
            (a.pi_power == b.pi_power || a.exact.numerator == 0 || b.exact.numerator == 0);
 }
 
-int pi_of(const Number& a, const Number& b) { return a.exact.numerator == 0 ? b.pi_power : a.pi_power; }
+int pi_of(const Number& a, const Number& b) {
+    return a.exact.numerator == 0 ? b.pi_power : a.pi_power;
+}
 
 struct Describe {
     std::string operator()(const Nothing&) const { return "nothing"; }
@@ -89,22 +92,24 @@ Number from_double(double value, lang::Dimension dimension) {
 }
 
 Number add(const Number& a, const Number& b) {
-    return from_exact(same_pi(a, b) ? puppetri::add(a.exact, b.exact) : std::nullopt, pi_of(a, b), a.dimension,
-                      a.value + b.value);
+    return from_exact(same_pi(a, b) ? puppetri::add(a.exact, b.exact) : std::nullopt, pi_of(a, b),
+                      a.dimension, a.value + b.value);
 }
 
 Number subtract(const Number& a, const Number& b) { return add(a, negate(b)); }
 
 Number multiply(const Number& a, const Number& b) {
     const bool exact = a.is_exact && b.is_exact;
-    return from_exact(exact ? puppetri::multiply(a.exact, b.exact) : std::nullopt, a.pi_power + b.pi_power,
-                      combined(a.dimension, b.dimension, 1), a.value * b.value);
+    return from_exact(exact ? puppetri::multiply(a.exact, b.exact) : std::nullopt,
+                      a.pi_power + b.pi_power, combined(a.dimension, b.dimension, 1),
+                      a.value * b.value);
 }
 
 Number divide(const Number& a, const Number& b) {
     const bool exact = a.is_exact && b.is_exact;
-    return from_exact(exact ? puppetri::divide(a.exact, b.exact) : std::nullopt, a.pi_power - b.pi_power,
-                      combined(a.dimension, b.dimension, -1), a.value / b.value);
+    return from_exact(exact ? puppetri::divide(a.exact, b.exact) : std::nullopt,
+                      a.pi_power - b.pi_power, combined(a.dimension, b.dimension, -1),
+                      a.value / b.value);
 }
 
 Number power(const Number& a, int exponent) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Terms: what an expression or a path of a scene file stands for. A constant (an exact number with its dimension, a
-// word, a point), a thing of the scene (an actor, a place, an instance of a net), or something that only the running
-// net knows (an expression over data and counts, a formula over places). Everything that a file says goes through here.
+// Terms: what an expression or a path of a scene file stands for. A constant (an exact number with
+// its dimension, a word, a point), a thing of the scene (an actor, a place, an instance of a net),
+// or something that only the running net knows (an expression over data and counts, a formula over
+// places). Everything that a file says goes through here.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,8 +17,8 @@
 
 namespace puppetri::scene {
 
-// exact * pi^pi_power, as long as it is known exactly; `value` always. In SI units and radians, frames turned into
-// seconds.
+// exact * pi^pi_power, as long as it is known exactly; `value` always. In SI units and radians,
+// frames turned into seconds.
 struct Number {
     Rational exact;
     int pi_power = 0;
@@ -90,16 +91,18 @@ struct MovementTerm {  // a movement as value; the subject is left open
     motion::BoundCall call;
 };
 
-using Term = std::variant<Nothing, Number, bool, Text, Word, PointTerm, ActorTerm, LimbTerm, PropTerm, SetTerm,
-                          HolderOfTerm, HolderTerm, InstanceTerm, PlaceTerm, TransitionTerm, EventTerm, DatumTerm,
-                          EnumTerm, EnumerationTerm, MovementTerm, Expr, net::Formula>;
+using Term =
+    std::variant<Nothing, Number, bool, Text, Word, PointTerm, ActorTerm, LimbTerm, PropTerm,
+                 SetTerm, HolderOfTerm, HolderTerm, InstanceTerm, PlaceTerm, TransitionTerm,
+                 EventTerm, DatumTerm, EnumTerm, EnumerationTerm, MovementTerm, Expr, net::Formula>;
 
 inline bool is_nothing(const Term& term) { return std::holds_alternative<Nothing>(term); }
 
 // What messages call it: "a time", "an actor", "a place".
 std::string describe(const Term& term);
 
-// Exact as long as it fits, else in doubles. Dimensions are checked by the caller for add, subtract and compare.
+// Exact as long as it fits, else in doubles. Dimensions are checked by the caller for add, subtract
+// and compare.
 Number add(const Number& a, const Number& b);
 Number subtract(const Number& a, const Number& b);
 Number multiply(const Number& a, const Number& b);

@@ -40,7 +40,8 @@ std::uint32_t variable(Locals& locals, const std::string& name, ValueType type) 
 
 // A name alone, without index: `d` in `due = d`.
 const lang::Name* single_name(const lang::Expr& e) {
-    return e.kind == lang::ExprKind::kPath && e.path.steps.size() == 1 && e.path.steps[0].index.empty()
+    return e.kind == lang::ExprKind::kPath && e.path.steps.size() == 1 &&
+                   e.path.steps[0].index.empty()
                ? &e.path.steps[0]
                : nullptr;
 }
@@ -55,7 +56,8 @@ void Elaboration::complete_transitions() {
     complete_rendezvous();
 }
 
-void Elaboration::bind_patterns(const lang::Arc& arc, Locals& locals, const Scope& scope, net::ArcDraft& out) {
+void Elaboration::bind_patterns(const lang::Arc& arc, Locals& locals, const Scope& scope,
+                                net::ArcDraft& out) {
     const net::PlaceDraft& place = draft().places[out.place.value];
     std::vector<std::string> known;
     for (const net::AttributeDraft& a : place.attributes) {
@@ -88,7 +90,8 @@ void Elaboration::bind_patterns(const lang::Arc& arc, Locals& locals, const Scop
         if (is_variable) {
             pattern.binds = variable(locals, single->text, type);
             if (locals.names[*pattern.binds].type != type) {
-                error("wrong-type", b.value.span, single->text + " was bound to a value of another type before",
+                error("wrong-type", b.value.span,
+                      single->text + " was bound to a value of another type before",
                       "use another name");
                 continue;
             }
@@ -108,7 +111,9 @@ void Elaboration::complete_arcs(std::size_t index, Locals& locals) {
     Scope scope = t.scope;
     scope.locals = &locals;
     const auto weight_of = [&](const lang::Arc& arc) {
-        return arc.weight ? constant_integer(arc.weight, t.scope, "the weight of an arc").value_or(1) : 1;
+        return arc.weight
+                   ? constant_integer(arc.weight, t.scope, "the weight of an arc").value_or(1)
+                   : 1;
     };
     for (const std::vector<lang::Arc>* arcs : {&t.node->inputs, &t.node->tests}) {
         for (const lang::Arc& arc : *arcs) {
@@ -117,7 +122,10 @@ void Elaboration::complete_arcs(std::size_t index, Locals& locals) {
             if (!place) {
                 continue;
             }
-            net::ArcDraft out{.kind = kind_of(arc.kind), .place = *place, .weight = weight, .where = at(arc.span)};
+            net::ArcDraft out{.kind = kind_of(arc.kind),
+                              .place = *place,
+                              .weight = weight,
+                              .where = at(arc.span)};
             bind_patterns(arc, locals, scope, out);
             draft().transitions[index].inputs.push_back(std::move(out));
         }
@@ -130,7 +138,8 @@ void Elaboration::complete_arcs(std::size_t index, Locals& locals) {
                 if (!arc.time_left) {
                     arc.time_left = variable(locals, kLeft, {ValueKind::kTime});
                 }
-                left = Expr::slot(net::slot(net::SlotKind::kVariable, *arc.time_left), {ValueKind::kTime});
+                left = Expr::slot(net::slot(net::SlotKind::kVariable, *arc.time_left),
+                                  {ValueKind::kTime});
             }
         }
         if (!left) {
@@ -144,7 +153,8 @@ void Elaboration::complete_arcs(std::size_t index, Locals& locals) {
         if (!place) {
             continue;
         }
-        net::OutputDraft out{.place = *place, .weight = weight, .lasts = left, .where = at(arc.span)};
+        net::OutputDraft out{
+            .place = *place, .weight = weight, .lasts = left, .where = at(arc.span)};
         auto attributes = bind_attributes(arc.pattern, *place, scope, arc.span, kLeft);
         if (attributes) {
             out.attributes = std::move(*attributes);
@@ -210,9 +220,11 @@ void Elaboration::complete_transition(std::size_t index) {
             const lang::Name* word = single_name(node.servers);
             if (word != nullptr && word->text == "infinite") {
                 delay.servers = net::DelayDraft::kInfiniteServers;
-            } else if (const auto k = constant_integer(node.servers, outer, "the number of servers")) {
+            } else if (const auto k =
+                           constant_integer(node.servers, outer, "the number of servers")) {
                 if (*k < 1 || *k > 1'000'000'000) {
-                    error("out-of-range", node.servers.span, "there is at least one server", "write 1 or more");
+                    error("out-of-range", node.servers.span, "there is at least one server",
+                          "write 1 or more");
                 } else {
                     delay.servers = static_cast<std::uint32_t>(*k);
                 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The ball game of Bicho, Raposo, Magalhaes (2001). Each place of its net has one way in and one way out (a timed event
-// graph), so that an independent recursion gives every firing time: t fires for the k-th time when the last of its input
-// places is ready,
+// The ball game of Bicho, Raposo, Magalhaes (2001). Each place of its net has one way in and one
+// way out (a timed event graph), so that an independent recursion gives every firing time: t fires
+// for the k-th time when the last of its input places is ready,
 //     x_t(k) = max over input places p of  x_{source of p}(k - M0(p)) + d_p(k)
-// (Baccelli, Cohen, Olsder, Quadrat, "Synchronization and Linearity", 1992, chapter 2). The durations d_p that movements
-// decide themselves are read from the score; all others are the scene's.
+// (Baccelli, Cohen, Olsder, Quadrat, "Synchronization and Linearity", 1992, chapter 2). The
+// durations d_p that movements decide themselves are read from the score; all others are the
+// scene's.
 #include <map>
 #include <string>
 #include <vector>
@@ -24,43 +25,52 @@ struct Arc {
 };
 // SCENES: "t1 P1→P2 · t2 P2+P9→P3 · ..." as producer and consumer of each place.
 constexpr Arc kArcs[] = {
-    {"P1", "t8", "t1", 1},   {"P2", "t1", "t2", 0},    {"P3", "t2", "t3", 0},    {"P4", "t3", "t4", 0},
-    {"P5", "t4", "t5", 0},   {"P6", "t5", "t6", 0},    {"P7", "t6", "t7", 0},    {"P8", "t7", "t8", 0},
-    {"P9", "t9", "t2", 0},   {"P10", "t3", "t10", 0},  {"P11", "t5", "t14", 0},  {"P12", "t15", "t6", 0},
-    {"P13", "t16", "t9", 1}, {"P14", "t9", "t10", 0},  {"P15", "t10", "t11", 0}, {"P16", "t11", "t12", 0},
-    {"P17", "t12", "t13", 0}, {"P18", "t13", "t14", 0}, {"P19", "t14", "t15", 0}, {"P20", "t15", "t16", 0},
+    {"P1", "t8", "t1", 1},    {"P2", "t1", "t2", 0},    {"P3", "t2", "t3", 0},
+    {"P4", "t3", "t4", 0},    {"P5", "t4", "t5", 0},    {"P6", "t5", "t6", 0},
+    {"P7", "t6", "t7", 0},    {"P8", "t7", "t8", 0},    {"P9", "t9", "t2", 0},
+    {"P10", "t3", "t10", 0},  {"P11", "t5", "t14", 0},  {"P12", "t15", "t6", 0},
+    {"P13", "t16", "t9", 1},  {"P14", "t9", "t10", 0},  {"P15", "t10", "t11", 0},
+    {"P16", "t11", "t12", 0}, {"P17", "t12", "t13", 0}, {"P18", "t13", "t14", 0},
+    {"P19", "t14", "t15", 0}, {"P20", "t15", "t16", 0},
 };
 // The same net with the names of the example with modules.
 const std::map<std::string, std::string> kModular = {
-    {"P1", "a.with_ball"},  {"P2", "a.to_throw"},      {"P3", "a.throwing"},    {"P4", "a.from_throw"},
-    {"P5", "a.without_ball"}, {"P6", "a.to_get"},      {"P7", "a.getting"},     {"P8", "a.from_get"},
-    {"P9", "b.can_grasp"},  {"P10", "a.flight"},       {"P11", "a.can_grasp"},  {"P12", "b.flight"},
-    {"P13", "b.without_ball"}, {"P14", "b.to_get"},    {"P15", "b.getting"},    {"P16", "b.from_get"},
-    {"P17", "b.with_ball"}, {"P18", "b.to_throw"},     {"P19", "b.throwing"},   {"P20", "b.from_throw"},
-    {"t1", "a.stop"},       {"t2", "a.throw"},         {"t3", "a.let_go"},      {"t4", "a.go"},
-    {"t5", "a.wait"},       {"t6", "a.catch"},         {"t7", "a.turn"},        {"t8", "a.walk_on"},
-    {"t9", "b.wait"},       {"t10", "b.catch"},        {"t11", "b.turn"},       {"t12", "b.walk_on"},
-    {"t13", "b.stop"},      {"t14", "b.throw"},        {"t15", "b.let_go"},     {"t16", "b.go"},
+    {"P1", "a.with_ball"},     {"P2", "a.to_throw"},     {"P3", "a.throwing"},
+    {"P4", "a.from_throw"},    {"P5", "a.without_ball"}, {"P6", "a.to_get"},
+    {"P7", "a.getting"},       {"P8", "a.from_get"},     {"P9", "b.can_grasp"},
+    {"P10", "a.flight"},       {"P11", "a.can_grasp"},   {"P12", "b.flight"},
+    {"P13", "b.without_ball"}, {"P14", "b.to_get"},      {"P15", "b.getting"},
+    {"P16", "b.from_get"},     {"P17", "b.with_ball"},   {"P18", "b.to_throw"},
+    {"P19", "b.throwing"},     {"P20", "b.from_throw"},  {"t1", "a.stop"},
+    {"t2", "a.throw"},         {"t3", "a.let_go"},       {"t4", "a.go"},
+    {"t5", "a.wait"},          {"t6", "a.catch"},        {"t7", "a.turn"},
+    {"t8", "a.walk_on"},       {"t9", "b.wait"},         {"t10", "b.catch"},
+    {"t11", "b.turn"},         {"t12", "b.walk_on"},     {"t13", "b.stop"},
+    {"t14", "b.throw"},        {"t15", "b.let_go"},      {"t16", "b.go"},
 };
 
-std::string named(const std::string& name, bool modular) { return modular ? kModular.at(name) : name; }
+std::string named(const std::string& name, bool modular) {
+    return modular ? kModular.at(name) : name;
+}
 
 class Times final : public run::LogSink {
-   public:
+ public:
     explicit Times(const net::Net& net) : net_(net) {}
     void fired(SimTime at, net::TransitionIndex t) override {
         times[std::string(net_.transition(t).path)].push_back(at.ticks);
     }
     std::map<std::string, std::vector<std::int64_t>> times;
 
-   private:
+ private:
     const net::Net& net_;
 };
 
-using Durations = std::map<std::string, std::vector<std::int64_t>>;  // by place (P1 ...) and occurrence
+using Durations =
+    std::map<std::string, std::vector<std::int64_t>>;  // by place (P1 ...) and occurrence
 
 // The recursion, as far as the durations reach and until the limit.
-std::map<std::string, std::vector<std::int64_t>> expected(const Durations& durations, std::int64_t limit) {
+std::map<std::string, std::vector<std::int64_t>> expected(const Durations& durations,
+                                                          std::int64_t limit) {
     std::map<std::string, std::vector<std::int64_t>> x;
     for (bool more = true; more;) {
         more = false;
@@ -145,7 +155,7 @@ run::Stop each_state(const Scene& scene, SimTime until, Look&& look) {
 }
 
 class Count {
-   public:
+ public:
     Count(const Scene& scene, const run::Player& player, bool modular)
         : scene_(scene), player_(player), modular_(modular) {}
     int operator()(std::initializer_list<const char*> places) const {
@@ -158,7 +168,7 @@ class Count {
         return sum;
     }
 
-   private:
+ private:
     const Scene& scene_;
     const run::Player& player_;
     bool modular_;
@@ -170,7 +180,8 @@ void check_invariants(const char* file, bool modular) {
     each_state(scene, SimTime{120 * kTicksPerSecond}, [&](const run::Player& player) {
         const Count count(scene, player, modular);
         ++states;
-        CHECK(count({"P1", "P2", "P3", "P7", "P8", "P10", "P12", "P15", "P16", "P17", "P18", "P19"}) == 1);
+        CHECK(count({"P1", "P2", "P3", "P7", "P8", "P10", "P12", "P15", "P16", "P17", "P18",
+                     "P19"}) == 1);
         CHECK(count({"P1", "P2", "P3", "P4", "P5", "P6", "P7", "P8"}) == 1);
         CHECK(count({"P13", "P14", "P15", "P16", "P17", "P18", "P19", "P20"}) == 1);
         CHECK(count({"P9", "P3", "P10"}) == count({"P14"}));
@@ -189,7 +200,8 @@ TEST_CASE("the ball game fires when the recursion of event graphs says [oracle]"
 TEST_CASE("other step counts: the thrower waits until the other is ready [oracle]") {
     const Scene scene = example("03_ball/waits.pup");
     compare_with_recursion(scene, true, 2, 4);
-    // a stands ready at frame 2*20 + 12; b has walked and can grasp at frame 4*20 + 12: then, not before, it throws.
+    // a stands ready at frame 2*20 + 12; b has walked and can grasp at frame 4*20 + 12: then, not
+    // before, it throws.
     Times log(scene.net);
     REQUIRE(perform(scene, {.sink = &log}).has_value());
     REQUIRE_FALSE(log.times["a.throw"].empty());
@@ -204,8 +216,10 @@ TEST_CASE("the invariants of the ball game hold in every state of a run [law]") 
 
 TEST_CASE("possession alternates, and nobody throws to one who is not ready [law]") {
     const Scene scene = example("03_ball/ball.pup");
-    const net::TransitionIndex a = scene.net.find_transition("a.throw"), b = scene.net.find_transition("b.throw");
-    const net::PlaceIndex grasp_a = scene.net.find_place("a.can_grasp"), grasp_b = scene.net.find_place("b.can_grasp");
+    const net::TransitionIndex a = scene.net.find_transition("a.throw"),
+                               b = scene.net.find_transition("b.throw");
+    const net::PlaceIndex grasp_a = scene.net.find_place("a.can_grasp"),
+                          grasp_b = scene.net.find_place("b.can_grasp");
     REQUIRE(grasp_a.valid());
     std::string throwers;
     std::uint32_t ready_a = 0, ready_b = 0;
@@ -227,7 +241,9 @@ TEST_CASE("possession alternates, and nobody throws to one who is not ready [law
     }
 }
 
-TEST_CASE("figure 5 has 20 places, 16 transitions and 40 arcs; each walk of the module is a net of its own [unit]") {
+TEST_CASE(
+    "figure 5 has 20 places, 16 transitions and 40 arcs; each walk of the module is a net of its "
+    "own [unit]") {
     const Scene flat = example("03_ball/figure5.pup");
     CHECK(flat.draft.places.size() == 20);
     CHECK(flat.draft.transitions.size() == 16);
@@ -237,7 +253,8 @@ TEST_CASE("figure 5 has 20 places, 16 transitions and 40 arcs; each walk of the 
     }
     CHECK(arcs == 40);
     const Scene modular = example("03_ball/ball.pup");
-    CHECK(modular.draft.places.size() == 2 * (10 + 2 * 10));  // a player: 10 places, two of them with a walk of 10
+    CHECK(modular.draft.places.size() ==
+          2 * (10 + 2 * 10));  // a player: 10 places, two of them with a walk of 10
     CHECK(modular.net.find_place("a.with_ball.P4").valid());
     CHECK(modular.net.find_place("b.without_ball.P9").valid());
 }
@@ -245,14 +262,16 @@ TEST_CASE("figure 5 has 20 places, 16 transitions and 40 arcs; each walk of the 
 TEST_CASE("figures do not drift apart: each walks as many steps in a round as the other [law]") {
     for (const char* file : {"03_ball/ball.pup", "03_ball/waits.pup"}) {
         const Scene scene = example(file);
-        const auto performed = perform(scene, {.horizon = {.time = SimTime{120 * kTicksPerSecond}}});
+        const auto performed =
+            perform(scene, {.horizon = {.time = SimTime{120 * kTicksPerSecond}}});
         REQUIRE(performed.has_value());
         figure::Pose ana, rui;
         double most = 0;
         for (int s = 0; s <= 120; s += 5) {
             performed->performance->pose({0}, SimTime{s * kTicksPerSecond}, ana);
             performed->performance->pose({1}, SimTime{s * kTicksPerSecond}, rui);
-            const Vec3 apart = ana.parent_from_joint[0].translation - rui.parent_from_joint[0].translation;
+            const Vec3 apart =
+                ana.parent_from_joint[0].translation - rui.parent_from_joint[0].translation;
             most = std::max(most, std::fabs(apart.z));
         }
         CHECK(most < 4 * 0.6 + 0.5);  // at most the steps of one phase ahead
@@ -306,15 +325,17 @@ TEST_CASE("seeded bugs do what the theory says [oracle]") {
             }
         });
         CHECK(stop == run::Stop::kDead);
-        CHECK(last == std::map<std::string, std::uint32_t>{
-                          {"a.to_get", 1}, {"a.can_grasp", 1}, {"b.to_get", 1}, {"b.can_grasp", 1}});
+        CHECK(last ==
+              std::map<std::string, std::uint32_t>{
+                  {"a.to_get", 1}, {"a.can_grasp", 1}, {"b.to_get", 1}, {"b.can_grasp", 1}});
     }
     {
         // t2 without P9: nothing takes its tokens, one more in each round.
         const Scene scene = example("03_ball/impatient.pup");
         const net::PlaceIndex p9 = scene.net.find_place("P9");
         std::uint32_t most = 0;
-        each_state(scene, long_enough, [&](const run::Player& player) { most = std::max(most, player.tokens(p9)); });
+        each_state(scene, long_enough,
+                   [&](const run::Player& player) { most = std::max(most, player.tokens(p9)); });
         CHECK(most >= 10);
     }
 }
@@ -322,11 +343,12 @@ TEST_CASE("seeded bugs do what the theory says [oracle]") {
 TEST_CASE("the toss: a throw only to one who is ready, in turn, one ball [law]") {
     const Scene scene = example("01_toss/toss.pup");
     std::string throwers;
-    const net::TransitionIndex a = scene.net.find_transition("a.throw"), b = scene.net.find_transition("b.throw");
+    const net::TransitionIndex a = scene.net.find_transition("a.throw"),
+                               b = scene.net.find_transition("b.throw");
     each_state(scene, SimTime{60 * kTicksPerSecond}, [&](const run::Player& player) {
         int balls = 0;
-        for (const char* place : {"a.holding", "a.throwing", "a.flight", "a.catching", "b.holding", "b.throwing",
-                                  "b.flight", "b.catching"}) {
+        for (const char* place : {"a.holding", "a.throwing", "a.flight", "a.catching", "b.holding",
+                                  "b.throwing", "b.flight", "b.catching"}) {
             balls += static_cast<int>(player.tokens(scene.net.find_place(place)));
         }
         CHECK(balls == 1);

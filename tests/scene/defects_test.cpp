@@ -40,7 +40,8 @@ constexpr Case kCases[] = {
     {"net n(p: time) { place P }\nuse n(3)", "wrong-unit", 5, 7},
     {"net n(p: tiem) { place P }\nuse n(3 s)", "unknown-name", 4, 10},
     {"net n(p: int = q, q: int = p) { place P tokens p }\nuse n()", "parameter-cycle", 4, 7},
-    {"net n(o: m) { place P }\nnet m() { place P }\nuse n(b) as a\nuse n(a) as b", "wrong-type", 6, 7},
+    {"net n(o: m) { place P }\nnet m() { place P }\nuse n(b) as a\nuse n(a) as b", "wrong-type", 6,
+     7},
     // movements
     {"place P does ana.step(stroke: 0.6 m)", "missing-argument", 4, 14},
     {"place P does ana.step(left, stroke: 0.6 s)", "wrong-unit", 4, 37},
@@ -65,7 +66,8 @@ constexpr Case kCases[] = {
     // nets
     {"place P runs n()\nnet n() { place Q }", "no-start", 4, 14},
     {"net n() { use n() as m }\nuse n()", "module-cycle", 4, 11},
-    {"net n() { place P runs m() }\nnet m() { start place Q runs n() \n finish place R }\nuse n()", "module-cycle", 5, 30},
+    {"net n() { place P runs m() }\nnet m() { start place Q runs n() \n finish place R }\nuse n()",
+     "module-cycle", 5, 30},
     {"net n() { place hidden }\nuse n() as a\nplace P\nt: P -> a.hidden", "not-public", 7, 11},
     {"place Q\nnet n() {\n place P\n t: P -> Q\n}\nuse n()", "unknown-name", 7, 10},
     {"place P tokens 1\nt: P -> P odds 0", "odds-not-positive", 5, 1},
@@ -113,8 +115,9 @@ bool is_told(const Diagnostics& list, const Case& c) {
 TEST_CASE("each defect is told with its code, line and column, and with a remedy [unit]") {
     for (const Case& c : kCases) {
         const Diagnostics list = defects_of(c.body);
-        CHECK_MESSAGE(is_told(list, c), c.body << "\n wants " << c.code << " at " << c.line << ":" << c.column
-                                               << "\n told:\n" << told(list));
+        CHECK_MESSAGE(is_told(list, c), c.body << "\n wants " << c.code << " at " << c.line << ":"
+                                               << c.column << "\n told:\n"
+                                               << told(list));
         std::size_t errors = 0;
         for (const Diagnostic& d : list) {
             errors += d.severity == Severity::kError ? 1 : 0;
@@ -123,7 +126,8 @@ TEST_CASE("each defect is told with its code, line and column, and with a remedy
             const bool has_remedy = !d.remedy.empty() || d.severity != Severity::kError;
             CHECK_MESSAGE(has_remedy, told({d}));
         }
-        CHECK_MESSAGE(errors <= 2, c.body << "\n told:\n" << told(list));  // no avalanche from one defect
+        CHECK_MESSAGE(errors <= 2, c.body << "\n told:\n"
+                                          << told(list));  // no avalanche from one defect
         MemoryFiles files;
         files.add("scene.pup", with_cast(c.body));
         CHECK_FALSE(load(files, "scene.pup").has_value());
@@ -159,15 +163,19 @@ TEST_CASE("the nearest known name is proposed [unit]") {
 }
 
 TEST_CASE("a defect of a net that is used twice is told once [unit]") {
-    const Diagnostics list = defects_of("net n(me: actor) { place P does me.thrw(ball) }\nuse n(ana) as a\nuse n(rui) as b");
+    const Diagnostics list = defects_of(
+        "net n(me: actor) { place P does me.thrw(ball) }\nuse n(ana) as a\nuse n(rui) as b");
     CHECK_MESSAGE(list.size() == 1, told(list));
 }
 
 TEST_CASE("nets that nobody uses, and libraries of nets, are looked at too [unit]") {
     CHECK(defects_of("net n(me: actor) { place P does me.thrw(ball) }").size() == 1);
-    CHECK(defects_of("net n(me: actor, k: int) { place P does me.throw(ball, to: me) tokens k }").empty());
+    CHECK(defects_of("net n(me: actor, k: int) { place P does me.throw(ball, to: me) tokens k }")
+              .empty());
     MemoryFiles files;
-    files.add("lib.pup", "net n(me: actor, other: n, k: int) {\n place P does me.walk(step: k)\n place Q takes 3 m\n t: P + other.Q -> R\n}\n");
+    files.add("lib.pup",
+              "net n(me: actor, other: n, k: int) {\n place P does me.walk(step: k)\n place Q "
+              "takes 3 m\n t: P + other.Q -> R\n}\n");
     const Diagnostics list = check(files, "lib.pup");
     CHECK_MESSAGE(list.size() == 3, told(list));
     CHECK_FALSE(load(files, "lib.pup").has_value());
@@ -202,11 +210,14 @@ TEST_CASE("nets that would grow without bound are refused in time [hostile]") {
     std::string body = "net n0() { place P }\n";
     for (int i = 1; i < 40; ++i) {
         const std::string below = "n" + std::to_string(i - 1);
-        body += "net n" + std::to_string(i) + "() {\n use " + below + "() as a\n use " + below + "() as b\n}\n";
+        body += "net n" + std::to_string(i) + "() {\n use " + below + "() as a\n use " + below +
+                "() as b\n}\n";
     }
     const Diagnostics list = defects_of(body + "use n39() as root");
-    CHECK(std::any_of(list.begin(), list.end(), [](const Diagnostic& d) { return d.code == "net-too-large"; }));
-    CHECK(defects_of("for i in 1 .. 1000000000000 {\n place P[i]\n}").at(0).code == "net-too-large");
+    CHECK(std::any_of(list.begin(), list.end(),
+                      [](const Diagnostic& d) { return d.code == "net-too-large"; }));
+    CHECK(defects_of("for i in 1 .. 1000000000000 {\n place P[i]\n}").at(0).code ==
+          "net-too-large");
 }
 
 }  // namespace puppetri::scene

@@ -58,7 +58,8 @@ constexpr std::int64_t kMillisecond = kTicksPerMillisecond;
 
 TEST_CASE("instances may name each other in any order, and roles carry their parameters [unit]") {
     const Scene scene = from_text(
-        "net n(me: actor, other: n, k: int = other.j, j: int = 2) {\n public place P takes k * 1 s\n place Q does me.face(other.me)\n"
+        "net n(me: actor, other: n, k: int = other.j, j: int = 2) {\n public place P takes k * 1 "
+        "s\n place Q does me.face(other.me)\n"
         " t: P -> other.P + Q\n}\nuse n(ana, b, j: 5) as a\nuse n(rui, a) as b");
     CHECK(ticks_of(scene, "a.P") == 2000 * kMillisecond);  // b's j
     CHECK(ticks_of(scene, "b.P") == 5000 * kMillisecond);  // a's j
@@ -71,10 +72,12 @@ TEST_CASE("instances may name each other in any order, and roles carry their par
     CHECK(std::get<motion::ActorIndex>(q.call.arguments[0].value).value == 0);
 }
 
-TEST_CASE("a place that runs a net has the net below its path, with start, finish and inside [unit]") {
+TEST_CASE(
+    "a place that runs a net has the net below its path, with start, finish and inside [unit]") {
     const Scene scene = from_text(
         "net inner() {\n start place S\n place M\n finish place F\n t: S -> M\n u: M -> F\n}\n"
-        "net outer() {\n start place S\n place P runs inner()\n finish place F\n t: S -> P\n u: P -> F\n}\n"
+        "net outer() {\n start place S\n place P runs inner()\n finish place F\n t: S -> P\n u: P "
+        "-> F\n}\n"
         "place A runs outer() tokens 1\nplace B\nv: A -> B");
     CHECK(scene.net.find_place("A.P.M").valid());
     REQUIRE(scene.draft.refinements.size() == 2);
@@ -97,8 +100,10 @@ TEST_CASE("a place that runs a net has the net below its path, with start, finis
 
 TEST_CASE("numbers are exact fractions and units are turned once [unit]") {
     const Scene scene = from_text(
-        "place A takes 1 s / 3 * 3\nplace B takes 7 frames\nplace C takes 0.1 s + 0.2 s\nplace D takes 90 deg / 1 turns * 1 s\n"
-        "place E takes min(3 s, 2 s, 4 s)\nplace F takes 3 m / (2 m/s)\nplace G takes (7 div 2) * 1 s\nplace H takes 2^3 * 1 ms");
+        "place A takes 1 s / 3 * 3\nplace B takes 7 frames\nplace C takes 0.1 s + 0.2 s\nplace D "
+        "takes 90 deg / 1 turns * 1 s\n"
+        "place E takes min(3 s, 2 s, 4 s)\nplace F takes 3 m / (2 m/s)\nplace G takes (7 div 2) * "
+        "1 s\nplace H takes 2^3 * 1 ms");
     CHECK(ticks_of(scene, "A") == 1000 * kMillisecond);
     CHECK(ticks_of(scene, "B") == 7 * kTicksPerSecond / 24);
     CHECK(ticks_of(scene, "C") == 300 * kMillisecond);
@@ -113,12 +118,14 @@ TEST_CASE("what is no whole number of ticks is rounded to nearest with a note [u
     // 705 600 000 / 11 = 64145454.54...
     const Scene scene = from_text("place A takes 1 s / 11");
     CHECK(ticks_of(scene, "A") == 64145455);
-    CHECK(std::any_of(scene.notes.begin(), scene.notes.end(), [](const Diagnostic& d) { return d.code == "rounded"; }));
+    CHECK(std::any_of(scene.notes.begin(), scene.notes.end(),
+                      [](const Diagnostic& d) { return d.code == "rounded"; }));
 }
 
 TEST_CASE("a time without unit takes the file's unit of time, and only that file's [unit]") {
     MemoryFiles files;
-    files.add("scene.pup", "scene \"x\"\ntime unit 1 min\nimport n from \"n.pup\"\nplace A takes 2\nuse n()\n");
+    files.add("scene.pup",
+              "scene \"x\"\ntime unit 1 min\nimport n from \"n.pup\"\nplace A takes 2\nuse n()\n");
     files.add("n.pup", "time unit 1 ms\nnet n(d: time = 5) { place B takes d }\n");
     const Scene scene = must(load(files, "scene.pup"));
     CHECK(ticks_of(scene, "A") == 120'000 * kMillisecond);
@@ -127,7 +134,8 @@ TEST_CASE("a time without unit takes the file's unit of time, and only that file
 
 TEST_CASE("loops index what they make, and rules in loops carry the name of the turn [unit]") {
     const Scene scene = from_text(
-        "net p() { public place P }\nuse p as a\nuse p as b\nfor i in 1 .. 3 {\n place f[i] tokens i\n"
+        "net p() { public place P }\nuse p as a\nuse p as b\nfor i in 1 .. 3 {\n place f[i] tokens "
+        "i\n"
         " for x in (a, b) {\n  rule deep never (x.P and f[i])\n }\n}\nt: f[1 + 1] -> f[3]\n"
         "for x in (a, b) {\n rule r never x.P\n}");
     CHECK(place(scene, "f[3]").tokens[0].count == 3);
@@ -139,7 +147,8 @@ TEST_CASE("loops index what they make, and rules in loops carry the name of the 
 
 TEST_CASE("an alias is the same place under another name [unit]") {
     const Scene scene = from_text(
-        "net n() { public place P takes 1 s tokens 2 }\nuse n as a\nplace Q is a.P\nplace R\nt: Q -> R");
+        "net n() { public place P takes 1 s tokens 2 }\nuse n as a\nplace Q is a.P\nplace R\nt: Q "
+        "-> R");
     CHECK(scene.net.find_place("Q") == scene.net.find_place("a.P"));
     const auto performed = perform(scene);
     REQUIRE(performed.has_value());
@@ -148,7 +157,8 @@ TEST_CASE("an alias is the same place under another name [unit]") {
 
 TEST_CASE("movements are bound with names, defaults left out, nested calls and sides [unit]") {
     const Scene scene = from_text(
-        "net n(me: actor, arms: movement = swing, s: side = left) {\n place P does me.step(s, stroke: 60 cm, arms: arms)\n}\n"
+        "net n(me: actor, arms: movement = swing, s: side = left) {\n place P does me.step(s, "
+        "stroke: 60 cm, arms: arms)\n}\n"
         "use n(ana, carry(ball)) as a\nuse n(rui, s: right) as b");
     const motion::BoundCall& a = action(scene, "a.P").call;
     CHECK(a.movement == "step");
@@ -165,7 +175,8 @@ TEST_CASE("movements are bound with names, defaults left out, nested calls and s
 
 TEST_CASE("attributes of tokens reach movements, guards and durations [unit]") {
     const Scene scene = from_text(
-        "token Job(n: int, wait: time)\nplace todo of Job tokens 1 (n = 3, wait = 2 s), 1 (n = 1, wait = 1 s)\n"
+        "token Job(n: int, wait: time)\nplace todo of Job tokens 1 (n = 3, wait = 2 s), 1 (n = 1, "
+        "wait = 1 s)\n"
         "place walking of Job does ana.walk(steps: n) takes wait\nplace done of Job\n"
         "go: todo(n = k, wait = w) -> walking(n = k + 1, wait = 2 * w) when k > 2\n"
         "stop: walking(n = k, wait = w) -> done(n = k, wait = w)");
@@ -194,7 +205,8 @@ TEST_CASE("events of movements wake transitions [unit]") {
 TEST_CASE("rules become formulas over places, firings, phases and holders [unit]") {
     const Scene scene = from_text(
         "place P tokens 1\nplace Q\nt: P -> Q\nu: Q -> P after 1 s\nstate s = P or not Q\n"
-        "rule a never (ana.left_leg.swing and ball.holder = ana.hands)\nrule b t only if P\nrule c s leads to Q within 2 s\n"
+        "rule a never (ana.left_leg.swing and ball.holder = ana.hands)\nrule b t only if P\nrule c "
+        "s leads to Q within 2 s\n"
         "rule d bounded(P, by: 2)\nrule e nobody_freezes(ana)\nrule f ltl G(P implies F(Q))");
     REQUIRE(scene.draft.host_atoms.size() == 2);
     CHECK(scene.draft.host_atoms[0].subject == "ana.left_leg");
@@ -213,8 +225,11 @@ TEST_CASE("rules become formulas over places, firings, phases and holders [unit]
 
 TEST_CASE("a net sees the cast of its own file, which comes along when it is named [unit]") {
     MemoryFiles files;
-    files.add("scene.pup", "scene \"x\"\nimport n from \"n.pup\"\ncast { ana: mannequin }\nuse n(ana)\n");
-    files.add("n.pup", "cast {\n hill: set { model floor }\n nobody: mannequin\n}\nnet n(me: actor) { place P does me.face(hill) }\n");
+    files.add("scene.pup",
+              "scene \"x\"\nimport n from \"n.pup\"\ncast { ana: mannequin }\nuse n(ana)\n");
+    files.add("n.pup",
+              "cast {\n hill: set { model floor }\n nobody: mannequin\n}\nnet n(me: actor) { place "
+              "P does me.face(hill) }\n");
     const Scene scene = must(load(files, "scene.pup"));
     CHECK(scene.play.cast.actors.size() == 1);
     REQUIRE(scene.play.cast.sets.size() == 1);
@@ -232,12 +247,14 @@ TEST_CASE("imports that name each other are fine; paths are beside the importer 
 
 TEST_CASE("cast, cameras and header become plain values in SI units [unit]") {
     MemoryFiles files;
-    files.add("scene.pup",
-              "language 1\nscene \"All\"\nframes 30000/1001 per second, until frame 300\nseed 9\n"
-              "cast {\n ana: stick { height 160 cm, at (1, 0, -2) m, facing 90 deg, palette amber }\n"
-              " crate: box { size (40, 30, 20) cm, mass 500 g, at (0, 0.15, 0) m }\n"
-              " road: set { model road, length 60 m, width 4 m }\n}\n"
-              "camera main { at (0, 1.6, 8) m, looks at (0, 1, 0) m, keeps ana in view, moves with them, opens 35 deg }\n");
+    files.add(
+        "scene.pup",
+        "language 1\nscene \"All\"\nframes 30000/1001 per second, until frame 300\nseed 9\n"
+        "cast {\n ana: stick { height 160 cm, at (1, 0, -2) m, facing 90 deg, palette amber }\n"
+        " crate: box { size (40, 30, 20) cm, mass 500 g, at (0, 0.15, 0) m }\n"
+        " road: set { model road, length 60 m, width 4 m }\n}\n"
+        "camera main { at (0, 1.6, 8) m, looks at (0, 1, 0) m, keeps ana in view, moves with them, "
+        "opens 35 deg }\n");
     const Scene scene = must(load(files, "scene.pup"));
     CHECK(scene.title == "All");
     CHECK(scene.seed == 9);

@@ -18,7 +18,9 @@ constexpr const char* kScene =
 
 TEST_CASE("a list of events is read exactly [unit]") {
     const EventList list = parse_event_list(
-        "# a comment\nseed 7\n2.5 s go\n\n100 ms a.whistle   # another\n1764000000 ticks go\n1.5 min go\n", "f", kNames);
+        "# a comment\nseed 7\n2.5 s go\n\n100 ms a.whistle   # another\n1764000000 ticks go\n1.5 "
+        "min go\n",
+        "f", kNames);
     CHECK(list.diagnostics.empty());
     CHECK(list.seed == std::optional<std::uint64_t>(7));
     REQUIRE(list.events.size() == 4);
@@ -29,8 +31,8 @@ TEST_CASE("a list of events is read exactly [unit]") {
 }
 
 TEST_CASE("each bad line of a list is told where it is wrong [unit]") {
-    const EventList list =
-        parse_event_list("2.5 s og\n3 m go\nx s go\n2 s\nnow go\n0.5 ticks go\n2 s go too\n", "f", kNames);
+    const EventList list = parse_event_list(
+        "2.5 s og\n3 m go\nx s go\n2 s\nnow go\n0.5 ticks go\n2 s go too\n", "f", kNames);
     std::vector<std::pair<std::uint32_t, std::string>> got;
     for (const Diagnostic& d : list.diagnostics) {
         got.emplace_back(d.where.line, d.code);
@@ -84,7 +86,8 @@ TEST_CASE("a recorded session replays to the same hash [law]") {
 TEST_CASE("a file of events is part of the scene [unit]") {
     MemoryFiles files;
     files.add("scene.pup",
-              "scene \"x\"\nuntil 10 s\nevents from \"go.txt\"\nnet n {\n event go\n place P\n t: -> P on go\n}\nuse n as a\n");
+              "scene \"x\"\nuntil 10 s\nevents from \"go.txt\"\nnet n {\n event go\n place P\n t: "
+              "-> P on go\n}\nuse n as a\n");
     files.add("go.txt", "1 s a.go\n2 s a.go\n");
     const Scene scene = must(load(files, "scene.pup"));
     const auto performed = perform(scene);

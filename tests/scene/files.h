@@ -12,7 +12,7 @@
 namespace puppetri::scene {
 
 class ExampleFiles final : public FileSource {
-   public:
+ public:
     Result<std::string, FileProblem> read(const std::string& path) override {
         std::ifstream in(PUP_SOURCE_DIR "/examples/" + path, std::ios::binary);
         if (!in) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reference of the language (docs/language.md) is true: every example that is a whole scene loads and runs.
+// The reference of the language (docs/language.md) is true: every example that is a whole scene
+// loads and runs.
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -29,7 +30,8 @@ TEST_CASE("every whole scene of docs/language.md loads without a defect and runs
                 const auto performed = perform(*scene);
                 REQUIRE_MESSAGE(performed.has_value(), text);
                 CHECK_MESSAGE(performed->firings > 0, text);
-                CHECK_MESSAGE(!performed->fault, text << (performed->fault ? told({*performed->fault}) : ""));
+                CHECK_MESSAGE(!performed->fault,
+                              text << (performed->fault ? told({*performed->fault}) : ""));
             }
         } else if (inside) {
             text += line + "\n";

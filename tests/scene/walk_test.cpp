@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The walk of Bicho, Raposo, Magalhaes (2001): when its transitions fire follows from the paper's text alone. The first
-// and the last step last n/2, the others n; the first is P2, the last P7 or P8, so that k steps last n/2 + (k-1)n + n/2
-// = kn, and for the paper's n = 20, k = 3 the borders are the frames 10, 30, 50, 60.
+// The walk of Bicho, Raposo, Magalhaes (2001): when its transitions fire follows from the paper's
+// text alone. The first and the last step last n/2, the others n; the first is P2, the last P7 or
+// P8, so that k steps last n/2 + (k-1)n + n/2 = kn, and for the paper's n = 20, k = 3 the borders
+// are the frames 10, 30, 50, 60.
 #include <map>
 #include <string>
 #include <vector>
@@ -22,7 +23,7 @@ struct Firing {
 };
 
 class Log final : public run::LogSink {
-   public:
+ public:
     explicit Log(const net::Net& net) : net_(net) {}
     void fired(SimTime at, net::TransitionIndex t) override {
         firings.push_back({at.ticks, std::string(net_.transition(t).path)});
@@ -39,7 +40,7 @@ class Log final : public run::LogSink {
     }
     std::vector<Firing> firings;
 
-   private:
+ private:
     const net::Net& net_;
 };
 
@@ -59,8 +60,10 @@ Scene one_walk(const std::string& arguments) {
     files.add("walk.pup", *examples.read("02_walk/walk.pup"));
     files.add("scene.pup",
               "language 1\nscene \"walk\"\nframes 24 per second\nimport walk from \"walk.pup\"\n"
-              "cast { ana: mannequin { } }\nplace w runs walk(ana" + arguments + ") tokens 1\nplace there\n"
-              "arrive: w -> there\nend { there }\n");
+              "cast { ana: mannequin { } }\nplace w runs walk(ana" +
+                  arguments +
+                  ") tokens 1\nplace there\n"
+                  "arrive: w -> there\nend { there }\n");
     return must(load(files, "scene.pup"));
 }
 
@@ -83,10 +86,12 @@ TEST_CASE("the walk fires at the paper's frames: 0, 10, 30, 50, 60 [oracle]") {
     }
 }
 
-TEST_CASE("k steps of n frames last exactly k n, the last one with the right leg for even k [law]") {
+TEST_CASE(
+    "k steps of n frames last exactly k n, the last one with the right leg for even k [law]") {
     for (const int n : {20, 14}) {
         for (int k = 1; k <= 6; ++k) {
-            const Scene scene = one_walk(", steps: " + std::to_string(k) + ", n: " + std::to_string(n) + " frames");
+            const Scene scene =
+                one_walk(", steps: " + std::to_string(k) + ", n: " + std::to_string(n) + " frames");
             Log log(scene.net);
             const Performed performed = perform_logged(scene, log);
             CHECK(log.frames("arrive") == Frames{k * n});
@@ -122,7 +127,8 @@ TEST_CASE("a walk that is used twice in a row is whole twice [oracle]") {
 }
 
 TEST_CASE("feet take turns, also where each limb has a place of its own [oracle]") {
-    // Starts and ends of the legs' movements, by frame: right, left, right, left (table 2 of the paper).
+    // Starts and ends of the legs' movements, by frame: right, left, right, left (table 2 of the
+    // paper).
     for (const char* file : {"02_walk/limbs.pup", "02_walk/legs.pup"}) {
         const Scene scene = example(file);
         Log log(scene.net);
@@ -137,11 +143,14 @@ TEST_CASE("feet take turns, also where each limb has a place of its own [oracle]
         bool arms = false;
         for (const stage::ScoreEntry& e : performed.performance->score()) {
             if (e.movement == "transfer") {
-                swings.push_back({e.start.ticks / kFrame, e.end.ticks / kFrame, e.limbs.has(motion::Limb::kLeftLeg)});
+                swings.push_back({e.start.ticks / kFrame, e.end.ticks / kFrame,
+                                  e.limbs.has(motion::Limb::kLeftLeg)});
             }
-            arms = arms || e.limbs.has(motion::Limb::kLeftArm) || e.limbs.has(motion::Limb::kRightArm);
+            arms =
+                arms || e.limbs.has(motion::Limb::kLeftArm) || e.limbs.has(motion::Limb::kRightArm);
         }
-        CHECK(swings == std::vector<Swing>{{0, 10, false}, {10, 30, true}, {30, 50, false}, {50, 60, true}});
+        CHECK(swings ==
+              std::vector<Swing>{{0, 10, false}, {10, 30, true}, {30, 50, false}, {50, 60, true}});
         CHECK(arms == (std::string(file) == "02_walk/limbs.pup"));
     }
 }
@@ -163,7 +172,8 @@ TEST_CASE("the duty factor changes the feet, not the times of the net [law]") {
     const Performed performed = perform_logged(scene, log);
     CHECK(log.frames("stop") == Frames{6 * 20});
     for (const char* walk : {"paper", "usual", "careful"}) {
-        CHECK(log.frames(std::string(walk) + ".t5") == Frames{10 + 4 * 20});  // the start of the sixth step
+        CHECK(log.frames(std::string(walk) + ".t5") ==
+              Frames{10 + 4 * 20});  // the start of the sixth step
     }
 }
 
@@ -174,7 +184,8 @@ TEST_CASE("n, x and the frame rate belong to the file that writes them [unit]") 
     files.add("walk.pup", *examples.read("02_walk/walk.pup"));
     files.add("scene.pup",
               "language 1\nscene \"walk\"\nframes 48 per second\nimport walk from \"walk.pup\"\n"
-              "cast { ana: mannequin { } }\nplace w runs walk(ana) tokens 1\nplace v runs walk(ana, n: 20 frames)\n"
+              "cast { ana: mannequin { } }\nplace w runs walk(ana) tokens 1\nplace v runs "
+              "walk(ana, n: 20 frames)\n"
               "place there\nhalf: w -> v\narrive: v -> there\nend { there }\n");
     const Scene scene = must(load(files, "scene.pup"));
     Log log(scene.net);
@@ -192,7 +203,9 @@ TEST_CASE("three arcs: only t2 fires, once, and the net rests with its token [or
     CHECK(performed.stop == run::Stop::kDead);
     run::Player player(scene.net);
     player.run({});
-    const auto tokens = [&](const char* place) { return player.tokens(scene.net.find_place(place)); };
+    const auto tokens = [&](const char* place) {
+        return player.tokens(scene.net.find_place(place));
+    };
     CHECK(tokens("P1") == 1);
     CHECK(tokens("P2") == 0);
     CHECK(tokens("P3") == 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lists of outside events: what `events from "file"`, `run --events FILE` and a recorded session hold. One line per
-// event: a time and the event's full path; `#` begins a comment.
+// Lists of outside events: what `events from "file"`, `run --events FILE` and a recorded session
+// hold. One line per event: a time and the event's full path; `#` begins a comment.
 //     2.5 s go          seconds, exactly; also ms and min
 //     1764000000 ticks a.whistle
 //     now stop          at once: only in live input
@@ -32,19 +32,20 @@ struct LiveEvent {
     net::EventIndex event;
 };
 
-// Reads a whole list. Fails line by line: "bad-event-line", "unknown-name"; `now` has no meaning here.
-// `names[i]` is how the list calls event i.
-EventList parse_event_list(std::string_view text, const std::string& filename, std::span<const std::string> names);
+// Reads a whole list. Fails line by line: "bad-event-line", "unknown-name"; `now` has no meaning
+// here. `names[i]` is how the list calls event i.
+EventList parse_event_list(std::string_view text, const std::string& filename,
+                           std::span<const std::string> names);
 
 // The full paths of all events of a net.
 std::vector<std::string> event_names(const net::Net& net);
 
 // Reads one line. Gives nullopt for an empty line or a comment.
 Checked<std::optional<LiveEvent>> parse_live_event(std::string_view line,
-                                                           std::span<const std::string> names);
+                                                   std::span<const std::string> names);
 
 // A session as a file: seed and events in ticks. Reading it again gives the same list.
-std::string write_event_list(const std::vector<run::OutsideEvent>& events, std::optional<std::uint64_t> seed,
-                             std::span<const std::string> names);
+std::string write_event_list(const std::vector<run::OutsideEvent>& events,
+                             std::optional<std::uint64_t> seed, std::span<const std::string> names);
 
 }  // namespace puppetri::scene

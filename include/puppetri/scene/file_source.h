@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where the text of files comes from: a disk (the program), memory (tests, the browser, editors). The scene module reads
-// nothing by itself.
+// Where the text of files comes from: a disk (the program), memory (tests, the browser, editors).
+// The scene module reads nothing by itself.
 #pragma once
 #include <map>
 #include <string>
@@ -14,7 +14,8 @@ struct FileProblem {
     std::string message;  // "there is no such file"
 };
 
-// "a/b/walk.pup" for importer "a/b/scene.pup" and "walk.pup"; `.` and `..` are removed as far as the text allows.
+// "a/b/walk.pup" for importer "a/b/scene.pup" and "walk.pup"; `.` and `..` are removed as far as
+// the text allows.
 std::string path_beside(const std::string& importer, const std::string& written);
 
 class FileSource {
@@ -24,8 +25,8 @@ class FileSource {
     // The bytes of a file, by the path that resolve gave (or that the user named).
     virtual Result<std::string, FileProblem> read(const std::string& path) = 0;
 
-    // The path of `import ... from "written"` in the file `importer`. One file must always get one path: files are told
-    // apart by it.
+    // The path of `import ... from "written"` in the file `importer`. One file must always get one
+    // path: files are told apart by it.
     virtual std::string resolve(const std::string& importer, const std::string& written) {
         return path_beside(importer, written);
     }

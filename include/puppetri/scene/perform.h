@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Performing a scene: the player runs its net, the stage prepares its movements, and out come a log, a score and a
-// performance. What the commands run, export and render and the benchmarks share.
+// Performing a scene: the player runs its net, the stage prepares its movements, and out come a
+// log, a score and a performance. What the commands run, export and render and the benchmarks
+// share.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -19,7 +20,8 @@ struct PerformOptions {
     std::vector<run::OutsideEvent> events;  // beside those that the scene schedules
     run::LogSink* sink = nullptr;           // hears of every firing
     bool record = false;                    // keep the outside events in Performed::recording
-    // Asked about 20 times a second of model time, with the share done; answering false ends the run cleanly.
+    // Asked about 20 times a second of model time, with the share done; answering false ends the
+    // run cleanly.
     bool (*go_on)(void* context, double share_done) = nullptr;
     void* context = nullptr;
 };
@@ -37,9 +39,10 @@ struct Performed {
     std::unique_ptr<const stage::Performance> performance;
 };
 
-// A run under way, for those who feed it while it goes on. The scene and what the options point to must outlive it.
+// A run under way, for those who feed it while it goes on. The scene and what the options point to
+// must outlive it.
 class Session {
-   public:
+ public:
     Session(const Scene& scene, const PerformOptions& options);
     ~Session();
     Session(const Session&) = delete;
@@ -60,7 +63,7 @@ class Session {
     // Fails   "no-horizon": see perform.
     Checked<Performed> finish();
 
-   private:
+ private:
     bool slice(SimTime until);
     double share_done() const;
 
@@ -74,9 +77,10 @@ class Session {
     bool interrupted_ = false;
 };
 
-// Plays from time 0 to the horizon, or until nothing can happen any more. A time that was given as horizon is the end
-// of the take even when the net rests earlier; otherwise the take ends with its last movement.
-// Fails   "no-horizon" when neither the options nor the scene give one and the net has not come to rest after an hour of
+// Plays from time 0 to the horizon, or until nothing can happen any more. A time that was given as
+// horizon is the end of the take even when the net rests earlier; otherwise the take ends with its
+// last movement. Fails   "no-horizon" when neither the options nor the scene give one and the net
+// has not come to rest after an hour of
 //         model time.
 Checked<Performed> perform(const Scene& scene, const PerformOptions& options = {});
 

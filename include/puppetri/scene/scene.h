@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A scene in memory: a cast, one compiled net with every module instantiated, the actions that its places ask of the
-// stage, rules and cameras. Made from files that have been checked as a whole: parsed, names resolved, units and types
-// compared with the signatures of movements. Immutable; runs and performances are made from it.
+// A scene in memory: a cast, one compiled net with every module instantiated, the actions that its
+// places ask of the stage, rules and cameras. Made from files that have been checked as a whole:
+// parsed, names resolved, units and types compared with the signatures of movements. Immutable;
+// runs and performances are made from it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -21,10 +22,12 @@ struct FrameRate {
     std::int64_t numerator = 24;
     std::int64_t denominator = 1;
 
-    // The instant of a frame (frame 0 is time 0), rounded to a tick where the rate does not divide a second of ticks.
-    // Gives   nullopt when it does not fit.
+    // The instant of a frame (frame 0 is time 0), rounded to a tick where the rate does not divide
+    // a second of ticks. Gives   nullopt when it does not fit.
     std::optional<SimTime> time_of_frame(std::int64_t frame) const;
-    double per_second() const { return static_cast<double>(numerator) / static_cast<double>(denominator); }
+    double per_second() const {
+        return static_cast<double>(numerator) / static_cast<double>(denominator);
+    }
     bool operator==(const FrameRate&) const = default;
 };
 
@@ -62,12 +65,13 @@ struct Scene {
 };
 
 // Reads a scene and all that it imports.
-// Fails   with every defect of every file, in order of file and position; nothing half-loaded is given.
+// Fails   with every defect of every file, in order of file and position; nothing half-loaded is
+// given.
 Checked<Scene> load(FileSource& files, const std::string& path);
 
-// Looks for defects only. A file without a scene line is a library of nets: each is tried with stand-ins for its
-// parameters; so is each net of a scene that nobody uses.
-// Gives   errors, warnings and notes in order of file and position.
+// Looks for defects only. A file without a scene line is a library of nets: each is tried with
+// stand-ins for its parameters; so is each net of a scene that nobody uses. Gives   errors,
+// warnings and notes in order of file and position.
 Diagnostics check(FileSource& files, const std::string& path);
 
 }  // namespace puppetri::scene
