@@ -104,7 +104,7 @@ int run(const Arguments& arguments) {
     } else {
         say(run_summary(*scene, result));
     }
-    return good && !result.fault ? kFine : kFailed;
+    return good && !result.fault && !result.interrupted ? kFine : kFailed;
 }
 
 }  // namespace

@@ -1,0 +1,238 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The command line from outside: exit codes, what goes to stdout and to stderr, files whole or absent, sessions.
+
+Usage: cli_test.py PROGRAM ROOT
+"""
+import csv
+import io
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+ROOT = pathlib.Path(sys.argv[2])
+EXAMPLES = ROOT / "examples"
+FRAME = 705_600_000 // 24
+
+
+def run(*arguments, stdin="", cwd=None):
+    return subprocess.run([PROGRAM, *map(str, arguments)], input=stdin, capture_output=True, text=True, cwd=cwd,
+                          timeout=120)
+
+
+class Cli(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def scene(self, text, name="scene.pup"):
+        path = self.path / name
+        path.write_text(text)
+        return path
+
+
+class Usage(Cli):
+    def test_help_and_version_are_fine(self):
+        for arguments in (["--help"], ["--version"], ["run", "--help"], ["check", "--help"], ["fmt", "--help"],
+                          ["new", "--help"], ["draw", "--help"]):
+            done = run(*arguments)
+            self.assertEqual(done.returncode, 0, arguments)
+            self.assertTrue(done.stdout)
+        self.assertIn("Examples:", run("run", "--help").stdout)
+
+    def test_bad_usage_exits_2(self):
+        for arguments in ([], ["dance"], ["run"], ["run", "a", "b"], ["check", "--jsn", "x"],
+                          ["run", EXAMPLES / "01_toss/toss.pup", "--seed", "x"],
+                          ["run", EXAMPLES / "01_toss/toss.pup", "--for", "4"],
+                          ["run", EXAMPLES / "01_toss/toss.pup", "--for", "4kg"],
+                          ["draw", EXAMPLES / "01_toss/toss.pup", "--as", "svg"]):
+            done = run(*arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertEqual(done.stdout, "")
+            self.assertTrue(done.stderr)
+
+    def test_a_missing_or_bad_file_exits_2(self):
+        for command in ("check", "run", "fmt", "draw"):
+            done = run(command, self.path / "missing.pup")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("missing.pup", done.stderr)
+        bad = self.scene("scene \"x\"\nplace P does nobody.step(left)\n")
+        for command in ("check", "run", "draw"):
+            self.assertEqual(run(command, bad).returncode, 2)
+
+    def test_no_colours_where_there_is_no_terminal(self):
+        bad = self.scene("place P takes 3 m\n")
+        self.assertNotIn("\033", run("check", bad).stderr)
+        self.assertNotIn("\033", run("run", EXAMPLES / "01_toss/toss.pup").stderr)
+
+
+class Check(Cli):
+    def test_a_defect_has_its_place_a_caret_and_a_remedy(self):
+        bad = self.scene("cast { ana: mannequin }\nplace P does ana.thrw()\n")
+        done = run("check", bad)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"{bad}:2:18: error:", done.stderr)
+        self.assertIn("place P does ana.thrw()\n", done.stderr)
+        self.assertIn("^~~~", done.stderr)
+        self.assertIn("throw", done.stderr)
+        self.assertIn("1 error", done.stderr)
+
+    def test_json_goes_to_stdout_alone(self):
+        bad = self.scene("place P takes 3 m\nt: P -> \"x\n")
+        done = run("check", bad, "--json")
+        report = json.loads(done.stdout)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(report["errors"], len(report["diagnostics"]))
+        for d in report["diagnostics"]:
+            self.assertEqual(d["file"], str(bad))
+            self.assertTrue(d["code"] and d["message"] and d["remedy"] and d["line"] >= 1)
+        good = run("check", EXAMPLES / "03_ball/ball.pup", "--json")
+        self.assertEqual(good.returncode, 0)
+        self.assertEqual(json.loads(good.stdout)["diagnostics"], [])
+
+    def test_every_example_is_fine_and_in_canonical_form(self):
+        for path in sorted(EXAMPLES.glob("*/*.pup")):
+            self.assertEqual(run("check", path).returncode, 0, path)
+            self.assertEqual(run("fmt", "--check", path).returncode, 0, path)
+
+
+class Fmt(Cli):
+    UGLY = "# kept\nplace   P   takes 1 s   # too\nt :P->P\n"
+
+    def test_prints_checks_and_writes(self):
+        path = self.scene(self.UGLY)
+        printed = run("fmt", path)
+        self.assertEqual(printed.returncode, 0)
+        self.assertIn("# kept", printed.stdout)
+        self.assertEqual(path.read_text(), self.UGLY)
+        self.assertEqual(run("fmt", "--check", path).returncode, 1)
+        self.assertEqual(run("fmt", "-", stdin=self.UGLY).stdout, printed.stdout)
+        self.assertEqual(run("fmt", "--write", path).returncode, 0)
+        self.assertEqual(path.read_text(), printed.stdout)
+        self.assertEqual(run("fmt", "--check", path).returncode, 0)
+
+    def test_a_file_with_a_defect_is_left_alone(self):
+        path = self.scene("place P takes\n")
+        self.assertEqual(run("fmt", "--write", path).returncode, 2)
+        self.assertEqual(path.read_text(), "place P takes\n")
+
+
+class Run(Cli):
+    BALL = EXAMPLES / "03_ball/ball.pup"
+    WALK = EXAMPLES / "02_walk/figure.pup"
+
+    def test_the_log_of_the_walk_is_the_papers(self):
+        log = self.path / "log.csv"
+        self.assertEqual(run("run", self.WALK, "--log", log).returncode, 0)
+        rows = list(csv.DictReader(io.StringIO(log.read_text())))
+        self.assertEqual(list(rows[0]), ["tick", "seconds", "transition"])
+        self.assertEqual([(int(r["tick"]) / FRAME, r["transition"]) for r in rows if r["transition"] != "t5"],
+                         [(0, "t1"), (10, "t2"), (30, "t3"), (50, "t8"), (60, "t10")])
+        for r in rows:
+            self.assertEqual(float(r["seconds"]), int(r["tick"]) / 705_600_000)
+
+    def test_the_score_has_its_columns(self):
+        done = run("run", self.BALL, "--score", "-")
+        rows = list(csv.DictReader(io.StringIO(done.stdout)))
+        self.assertEqual(list(rows[0]), "start_tick,end_tick,left_tick,start_seconds,end_seconds,place,actor,limbs,"
+                                        "movement,prop,instance".split(","))
+        step = next(r for r in rows if r["place"] == "a.with_ball.P4")
+        self.assertEqual((step["actor"], step["movement"], step["instance"]), ("ana", "step", "a.with_ball"))
+        self.assertEqual(int(step["end_tick"]) - int(step["start_tick"]), 20 * FRAME)
+        fly = next(r for r in rows if r["movement"] == "fly")
+        self.assertEqual((fly["actor"], fly["prop"]), ("", "ball"))
+
+    def test_the_hash_is_that_of_seed_and_scene(self):
+        hashes = [run("run", self.BALL, "--hash").stdout for _ in range(2)]
+        self.assertEqual(hashes[0], hashes[1])
+        self.assertRegex(hashes[0], r"^[0-9a-f]{16}\n$")
+        self.assertEqual(json.loads(run("run", self.BALL, "--json").stdout)["log_hash"], hashes[0].strip())
+
+    def test_a_run_ends_after_time_frames_or_firings(self):
+        for limit in ("2.5s", "60f", "60 frames", "2500ms"):
+            report = json.loads(run("run", self.BALL, "--for", limit, "--json").stdout)
+            self.assertEqual((report["ticks"], report["frames"], report["stop"]), (60 * FRAME, 60, "limit"), limit)
+        for limit in ("17x", "17 firings"):
+            self.assertEqual(json.loads(run("run", self.BALL, "--for", limit, "--json").stdout)["firings"], 17)
+
+    def test_events_come_from_a_file_or_from_stdin_and_sessions_replay(self):
+        scene = self.scene("scene \"x\"\nuntil 6 s\nevent go\nplace idle tokens 1\nplace busy takes 0.5 .. 1.5 s\n"
+                           "start: idle -> busy on go\nfinish: busy -> idle\n")
+        lines = "1 s go\n2.75 s go\n5 s go\n"
+        (self.path / "go.txt").write_text(lines)
+        from_file = run("run", scene, "--events", self.path / "go.txt", "--hash")
+        session = self.path / "session.txt"
+        live = run("run", scene, "--events", "-", "--record", session, "--hash", stdin=lines)
+        self.assertEqual(from_file.returncode, 0)
+        self.assertEqual(live.stdout, from_file.stdout)
+        self.assertEqual(run("run", scene, "--events", session, "--hash").stdout, live.stdout)
+        now = run("run", scene, "--events", "-", "--record", session, "--hash", "--seed", "5", stdin="now go\n3 s go\n")
+        self.assertEqual(run("run", scene, "--events", session, "--hash").stdout, now.stdout)  # the seed is in it
+        self.assertEqual(json.loads(run("run", scene, "--events", session, "--json").stdout)["firings"], 4)
+        (self.path / "bad.txt").write_text("1 s og\n")
+        bad = run("run", scene, "--events", self.path / "bad.txt")
+        self.assertEqual(bad.returncode, 2)
+        self.assertIn("bad.txt:1:5", bad.stderr)
+
+    def test_a_fault_of_the_run_exits_1_with_its_reason(self):
+        scene = self.scene("scene \"x\"\ndata n: 0 .. 2 = 0\nplace P tokens 1 takes 1 s\nt: P -> P set n := n + 1\n"
+                           "until 9 s\n")
+        done = run("run", scene)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("n", done.stderr)
+        self.assertEqual(json.loads(run("run", scene, "--json").stdout)["stop"], "fault")
+
+    def test_what_cannot_be_written_exits_1_and_leaves_nothing(self):
+        done = run("run", self.WALK, "--log", self.path / "missing" / "log.csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(os.listdir(self.path), [])
+
+    def test_ctrl_c_ends_with_what_is_known(self):
+        scene = self.scene("scene \"x\"\nuntil 1000000 h\nplace P takes 1 ms tokens 1\nt: P -> P\n")
+        log = self.path / "log.csv"
+        process = subprocess.Popen([PROGRAM, "run", scene, "--log", log, "--json"], stdout=subprocess.PIPE, text=True)
+        time.sleep(0.7)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=30)
+        report = json.loads(out)
+        self.assertEqual((process.returncode, report["stop"]), (1, "interrupted"))
+        with log.open() as lines:
+            self.assertEqual(sum(1 for _ in lines) - 1, report["firings"])
+        self.assertEqual(sorted(os.listdir(self.path)), ["log.csv", "scene.pup"])
+
+
+class New(Cli):
+    def test_each_template_is_a_scene_that_runs(self):
+        for template in ("toss", "walk", "ball"):
+            name = f"my_{template}"
+            self.assertEqual(run("new", name, "--template", template, cwd=self.path).returncode, 0)
+            self.assertEqual(run("run", self.path / f"{name}.pup", "--for", "2s").returncode, 0, template)
+
+    def test_nothing_is_overwritten(self):
+        path = self.scene("# mine\n", "duet.pup")
+        self.assertEqual(run("new", "duet", cwd=self.path).returncode, 1)
+        self.assertEqual(path.read_text(), "# mine\n")
+        self.assertEqual(run("new", "a b", cwd=self.path).returncode, 2)
+        self.assertEqual(run("new", "x", "--template", "opera", cwd=self.path).returncode, 2)
+        self.assertEqual(os.listdir(self.path), ["duet.pup"])
+
+
+class Draw(Cli):
+    def test_figure_2_in_mathematical_notation(self):
+        done = run("draw", EXAMPLES / "04_three_arcs/three_arcs.pup", "--as", "math")
+        self.assertEqual(done.returncode, 0)
+        self.assertTrue(done.stdout.startswith("P = {P1, P2, P3, P4}\nT = {t1, t2}\n"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
