@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "puppetri/io/disk_files.h"
 #include "templates.h"
 #include "terminal.h"
 
@@ -40,6 +41,12 @@ std::string create(const std::string& path, std::string_view text) {
         return "cannot write " + path + ": " + std::strerror(errno);
     }
     return "";
+}
+
+// Whether the file is there with this very text.
+bool holds(const std::string& path, std::string_view text) {
+    const auto found = io::DiskFiles().read(path);
+    return found && *found == text;
 }
 
 // NAME or NAME.pup, a file name of letters, digits, - and _ (folders before it are allowed).
@@ -80,15 +87,20 @@ int run(const Arguments& arguments) {
         return kBadInput;
     }
     // What the scene imports first, so that a scene that exists is whole.
+    std::vector<std::string> made;
     for (std::size_t i = files.size(); i-- > 0;) {
+        if (i > 0 && holds(files[i].first, files[i].second)) {
+            continue;  // another scene brought it already
+        }
         const std::string problem = create(files[i].first, files[i].second);
         if (!problem.empty()) {
-            for (std::size_t made = i + 1; made < files.size(); ++made) {
-                std::remove(files[made].first.c_str());
+            for (const std::string& path : made) {
+                std::remove(path.c_str());
             }
             say_error(problem);
             return kFailed;
         }
+        made.push_back(files[i].first);
     }
     say("wrote " + files[0].first + "; now: puppetri run " + files[0].first);
     return kFine;
