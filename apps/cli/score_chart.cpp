@@ -68,6 +68,30 @@ class Band {
     std::size_t width_;
 };
 
+// Movements one after the other.
+struct Line {
+    std::string name;  // of the actor; empty for its further lines
+    std::vector<const stage::ScoreEntry*> entries;
+    SimTime free_at{0};
+
+    void add(const stage::ScoreEntry& entry) {
+        entries.push_back(&entry);
+        free_at = entry.left;
+    }
+};
+
+// The first line of this actor (from number `first` on) that is free at this instant; a new one if
+// need be.
+Line& line_for(std::vector<Line>& lines, std::size_t first, const std::string& name, SimTime at) {
+    for (std::size_t i = first; i < lines.size(); ++i) {
+        if (lines[i].free_at <= at) {
+            return lines[i];
+        }
+    }
+    lines.push_back({lines.size() == first ? name : "", {}, {}});
+    return lines.back();
+}
+
 // The longest round length that gives movements room on average.
 double band_length_s(const stage::Performance& performance, double end_s, std::size_t rows,
                      std::size_t width) {
@@ -93,7 +117,8 @@ std::string score_chart(const stage::Performance& performance, SimTime end, int 
     const auto row_of = [](const stage::ScoreEntry& entry) -> const std::string& {
         return entry.actor.empty() ? entry.prop : entry.actor;
     };
-    // In the order of the cast.
+    // In the order of the cast; movements of one actor that run side by side get lines of their
+    // own.
     std::vector<std::string> names;
     for (const stage::ActorView& a : performance.actors()) {
         names.push_back(a.name);
@@ -101,29 +126,30 @@ std::string score_chart(const stage::Performance& performance, SimTime end, int 
     for (const stage::PropView& p : performance.props()) {
         names.push_back(p.name);
     }
+    std::vector<Line> lines;
     std::size_t name_width = 0;
-    std::vector<std::string> used;
     for (const std::string& name : names) {
-        const auto moves = [&](const stage::ScoreEntry& entry) { return row_of(entry) == name; };
-        if (std::any_of(performance.score().begin(), performance.score().end(), moves)) {
-            used.push_back(name);
-            name_width = std::max(name_width, name.size());
+        const std::size_t first = lines.size();
+        for (const stage::ScoreEntry& entry : performance.score()) {
+            if (row_of(entry) == name) {
+                line_for(lines, first, name, entry.start).add(entry);
+                name_width = std::max(name_width, name.size());
+            }
         }
     }
-    const double length_s = band_length_s(performance, end_s, used.size(), width);
+    const double length_s = band_length_s(performance, end_s, lines.size(), width);
     std::string text;
     for (int i = 0; i < kMostBands && i * length_s < end_s - 1e-9; ++i) {
         const Band band(i * length_s, length_s, width);
         text += (i > 0 ? "\n" : "") + band.axis(name_width + 4);
-        for (const std::string& name : used) {
+        for (const Line& line : lines) {
             std::string row(width, ' ');
-            for (const stage::ScoreEntry& entry : performance.score()) {
-                if (row_of(entry) == name) {
-                    band.add(row, entry);
-                }
+            for (const stage::ScoreEntry* entry : line.entries) {
+                band.add(row, *entry);
             }
             row.erase(row.find_last_not_of(' ') + 1);
-            text += "  " + name + std::string(name_width - name.size() + 2, ' ') + row + "\n";
+            text +=
+                "  " + line.name + std::string(name_width - line.name.size() + 2, ' ') + row + "\n";
         }
     }
     if (kMostBands * length_s < end_s - 1e-9) {
