@@ -88,9 +88,9 @@ class Compiler {
 
     void classify_places() {
         const std::size_t count = net_.places.size();
-        out_.place_kind.assign(count, PlaceKind::kCount);
+        out_.place.assign(count, PlaceRow{});
         const auto raise = [&](std::uint32_t p, PlaceKind kind) {
-            out_.place_kind[p] = std::max(out_.place_kind[p], kind);
+            out_.place[p].kind = std::max(out_.place[p].kind, kind);
         };
         std::vector<bool> zero(count);
         out_.paced = net_.schedule.empty();
@@ -124,7 +124,7 @@ class Compiler {
             for (const ArcDraft& arc : t.inputs) {
                 const bool now = arc.kind == ArcKind::kTakeNow || arc.kind == ArcKind::kTakeAllNow;
                 if (arc.time_left ||
-                    (now && out_.place_kind[arc.place.value] != PlaceKind::kCount)) {
+                    (now && out_.place[arc.place.value].kind != PlaceKind::kCount)) {
                     raise(arc.place.value, PlaceKind::kRich);
                 }
             }
@@ -175,11 +175,10 @@ class Compiler {
 
     void layout_places() {
         const auto count = static_cast<std::uint32_t>(net_.places.size());
-        out_.place_duration.assign(count, kNoIndex);
         std::map<std::int64_t, std::uint32_t> constants;  // ticks -> duration
         for (std::uint32_t p = 0; p < count; ++p) {
             const PlaceDraft& place = net_.places[p];
-            if (out_.place_kind[p] == PlaceKind::kRich) {
+            if (out_.place[p].kind == PlaceKind::kRich) {
                 layout_rich(p, place);
             }
             const DurationDraft d = effective_duration(place);
@@ -190,7 +189,7 @@ class Compiler {
                 }
                 const auto known = constants.find(ticks);
                 if (known != constants.end()) {
-                    out_.place_duration[p] = known->second;
+                    out_.place[p].duration = known->second;
                     continue;
                 }
                 constants[ticks] = static_cast<std::uint32_t>(out_.durations.size());
@@ -204,7 +203,7 @@ class Compiler {
                 table.fifo = static_cast<std::uint32_t>(out_.fifo_ticks.size());
                 out_.fifo_ticks.push_back(table.ticks);
             }
-            out_.place_duration[p] = static_cast<std::uint32_t>(out_.durations.size());
+            out_.place[p].duration = static_cast<std::uint32_t>(out_.durations.size());
             out_.durations.push_back(std::move(table));
         }
     }
@@ -245,8 +244,8 @@ class Compiler {
     // How long the chain `as Q as R ...` from a place is: siblings come first.
     std::uint32_t as_depth(std::uint32_t p) const {
         std::uint32_t depth = 0;
-        while (out_.place_duration[p] != kNoIndex) {
-            const DurationTable& d = out_.durations[out_.place_duration[p]];
+        while (out_.place[p].duration != kNoIndex) {
+            const DurationTable& d = out_.durations[out_.place[p].duration];
             if (d.kind != DurationKind::kAs || depth > net_.places.size()) {
                 break;
             }
@@ -279,12 +278,16 @@ class Compiler {
             return a.kind != ArcKind::kTakeAll && a.kind != ArcKind::kTakeAllNow;
         });
         layout_outputs(draft, element, special, demands, gives);
+        TransitionRow row;
+        row.takes = static_cast<std::uint32_t>(out_.arcs.size());
         for (const auto& [p, w] : takes) {
-            takes_.push_back({t, {p, w}});
+            out_.arcs.push_back({p, w});
         }
+        row.gives = static_cast<std::uint32_t>(out_.arcs.size());
         for (const auto& [p, w] : gives) {
-            gives_.push_back({t, {p, w}});
+            out_.arcs.push_back({p, w});
         }
+        row.end = static_cast<std::uint32_t>(out_.arcs.size());
         const bool conditional = watch(t, demands);
         if (!conditional) {
             out_.unconditional.push_back(t);
@@ -365,15 +368,13 @@ class Compiler {
             special.assignments.empty() && special.must_be_clean.empty()) {
             flags |= kOnlyDelayed;
         }
-        out_.flags.push_back(flags);
+        row.flags = flags;
         if (flags != 0) {
-            if (out_.special_of.empty()) {
-                out_.special_of.assign(net_.transitions.size(), kNoIndex);
-            }
-            out_.special_of[t] = static_cast<std::uint32_t>(out_.specials.size());
+            row.special = static_cast<std::uint32_t>(out_.specials.size());
             out_.specials.push_back(std::move(special));
         }
-        out_.path_hash.push_back(hash_text(draft.path));
+        row.path_hash = hash_text(draft.path);
+        out_.transition.push_back(row);
         priorities_.push_back(draft.priority);
     }
 
@@ -451,7 +452,7 @@ class Compiler {
             const std::uint32_t p = out.place.value;
             const auto weight = static_cast<std::uint32_t>(out.weight);
             demands[p].give += weight;
-            const bool timed = out_.place_kind[p] != PlaceKind::kCount;
+            const bool timed = out_.place[p].kind != PlaceKind::kCount;
             if (rich_of(p) == kNoIndex && !out.lasts && !siblings) {
                 gives[p] += weight;
                 continue;
@@ -483,7 +484,7 @@ class Compiler {
     bool watch(std::uint32_t t, const std::map<std::uint32_t, Demand>& demands) {
         bool any = false;
         for (const auto& [p, d] : demands) {
-            const bool counted = out_.place_kind[p] == PlaceKind::kCount;
+            const bool counted = out_.place[p].kind == PlaceKind::kCount;
             const auto need = [&](bool ready, std::int64_t threshold, bool inhibits) {
                 const Watcher w{t | (inhibits ? Watcher::kInhibits : 0),
                                 static_cast<std::uint32_t>(
@@ -575,12 +576,19 @@ class Compiler {
 
     void finish_rows() {
         const auto places = static_cast<std::uint32_t>(net_.places.size());
-        const auto transitions = static_cast<std::uint32_t>(net_.transitions.size());
-        out_.takes = make_rows(transitions, std::move(takes_));
-        out_.gives = make_rows(transitions, std::move(gives_));
-        out_.ready_watchers = make_rows(places, std::move(ready_watchers_));
-        out_.total_watchers = make_rows(places, std::move(total_watchers_));
+        const Rows<Watcher> ready = make_rows(places, std::move(ready_watchers_));
+        const Rows<Watcher> total = make_rows(places, std::move(total_watchers_));
         out_.place_dependents = make_rows(places, std::move(place_dependents_));
+        out_.watchers.reserve(ready.items.size() + total.items.size());
+        for (std::uint32_t p = 0; p < places; ++p) {
+            PlaceRow& row = out_.place[p];
+            row.ready = static_cast<std::uint32_t>(out_.watchers.size());
+            out_.watchers.insert(out_.watchers.end(), ready.row(p).begin(), ready.row(p).end());
+            row.total = static_cast<std::uint32_t>(out_.watchers.size());
+            out_.watchers.insert(out_.watchers.end(), total.row(p).begin(), total.row(p).end());
+            row.end = static_cast<std::uint32_t>(out_.watchers.size());
+            row.has_dependents = !out_.place_dependents.row(p).empty();
+        }
         out_.datum_dependents =
             make_rows(static_cast<std::uint32_t>(net_.data.size()), std::move(datum_dependents_));
         out_.event_listeners =
@@ -602,9 +610,9 @@ class Compiler {
             const auto it =
                 std::lower_bound(out_.level_priority.begin(), out_.level_priority.end(), priority,
                                  [](std::int64_t a, std::int64_t b) { return a > b; });
-            out_.level.push_back(static_cast<std::uint16_t>(it - out_.level_priority.begin()));
-            if ((out_.flags[t] & kHasOdds) != 0) {
-                out_.level_has_odds[out_.level[t]] = 1;
+            out_.transition[t].level = static_cast<std::uint16_t>(it - out_.level_priority.begin());
+            if ((out_.transition[t].flags & kHasOdds) != 0) {
+                out_.level_has_odds[out_.transition[t].level] = 1;
             }
         }
     }
@@ -641,30 +649,23 @@ class Compiler {
 
     void hash() {
         Hash64 h;
-        const auto rows = [&h](const auto& r) {
-            for (const auto& item : r.items) {
-                if constexpr (requires { item.place; }) {
-                    h.add_u64(item.place).add_u64(item.weight);
-                } else if constexpr (requires { item.threshold; }) {
-                    h.add_u64(item.transition).add_u64(item.threshold);
-                } else {
-                    h.add_u64(item);
-                }
-            }
-            for (const std::uint32_t s : r.starts) {
-                h.add_u64(s);
-            }
-        };
         for (const Names* names : {&out_.places, &out_.transitions, &out_.data, &out_.events}) {
             for (std::uint32_t i = 0; i < names->size(); ++i) {
                 h.add_text(names->path(i));
             }
         }
-        rows(out_.takes);
-        rows(out_.gives);
-        rows(out_.ready_watchers);
-        rows(out_.total_watchers);
-        rows(out_.place_dependents);
+        for (const TransitionRow& t : out_.transition) {
+            h.add_u64(t.gives).add_u64(t.end).add_u64(t.flags);
+        }
+        for (const Weighted& w : out_.arcs) {
+            h.add_u64(w.place).add_u64(w.weight);
+        }
+        for (const PlaceRow& p : out_.place) {
+            h.add_u64(p.total).add_u64(p.end).add_u64(p.duration);
+        }
+        for (const Watcher& w : out_.watchers) {
+            h.add_u64(w.transition).add_u64(w.threshold);
+        }
         for (const std::int64_t p : priorities_) {
             h.add_i64(p);
         }
@@ -693,7 +694,6 @@ class Compiler {
     NetDraft& net_;
     Diagnostics& defects_;
     NetTables& out_;
-    std::vector<std::pair<std::uint32_t, Weighted>> takes_, gives_;
     std::vector<std::pair<std::uint32_t, Watcher>> ready_watchers_, total_watchers_;
     std::vector<Entry> place_dependents_, datum_dependents_, listeners_;
     std::vector<std::int64_t> priorities_;

@@ -55,7 +55,7 @@ bool Engine::draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& c
 }
 
 bool Engine::draw_place(std::uint32_t p, std::int64_t& ticks) {
-    const std::uint32_t number = tables_->place_duration[p];
+    const std::uint32_t number = tables_->place[p].duration;
     if (number == kNoIndex) {
         ticks = 0;
         return true;

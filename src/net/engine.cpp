@@ -16,6 +16,7 @@ namespace puppetri::net {
 
 namespace {
 
+constexpr std::size_t kManyTickets = 1024;  // from here on the tables are no longer in the nearest cache
 constexpr std::uint32_t kFresh = 1, kRaced = 2, kStatus = 3;
 
 bool earlier(const Pending& a, const Pending& b) { return a.at < b.at; }
@@ -42,9 +43,9 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
       options_(options) {
     const NetTables& n = *tables_;
     const std::uint64_t seed = options.seed;
-    ticket_keys_.resize(n.transitions.size());
-    for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
-        ticket_keys_[t] = stream_key(seed, n.transitions.path(t), "ticket");
+    hot_.resize(n.transitions.size());
+    for (std::uint32_t t = 0; t < n.transitions.size() && random_; ++t) {
+        hot_[t].ticket_key = stream_key(seed, n.transitions.path(t), "ticket");
     }
     for (const std::uint32_t p : n.stream_place) {
         duration_keys_.push_back(stream_key(seed, n.places.path(p), "duration"));
@@ -55,7 +56,6 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
     for (const DelayTable& d : n.delays) {
         delay_keys_.push_back(stream_key(seed, n.transitions.path(d.transition), "delay"));
     }
-    dependents_ = !n.place_dependents.items.empty();
     std::uint32_t variables = 0;
     for (std::uint32_t s = 0; s < n.specials.size(); ++s) {
         const Special& special = n.specials[s];
@@ -85,9 +85,6 @@ void Engine::start() {
     state_.rings.resize(n.fifo_ticks.size());
     state_.clocks.resize(n.delays.size());
     state_.lotteries.resize(n.level_priority.size());
-    if (random_) {
-        state_.ticket_draws.resize(n.transitions.size());
-    }
     state_.duration_draws.resize(n.duration_streams);
     state_.delay_draws.resize(n.delays.size());
     state_.token_draws.resize(n.token_streams);
@@ -107,10 +104,10 @@ void Engine::restore(State state) {
     PUP_REQUIRE(state.counts.size() == tables_->places.size());
     state_ = std::move(state);
     faulted_ = false;
-    if (random_) {
-        state_.ticket_draws.resize(tables_->transitions.size());
-    }
     rebuild();
+    for (std::uint32_t t = 0; t < state_.ticket_draws.size(); ++t) {
+        hot_[t].ticket_draws = state_.ticket_draws[t];
+    }
     look_again(false);
     // Losers of this instant get their tickets back.
     for (std::uint32_t l = 0; l < state_.lotteries.size(); ++l) {
@@ -136,6 +133,10 @@ void Engine::restore(State state) {
 
 State Engine::save() const {
     State s = state_;
+    s.ticket_draws.clear();
+    for (std::uint32_t t = 0; t < hot_.size() && random_; ++t) {
+        s.ticket_draws.push_back(hot_[t].ticket_draws);
+    }
     for (Lottery& l : s.lotteries) {
         settle_lottery(l);
         std::erase_if(l.tickets,
@@ -150,7 +151,11 @@ State Engine::save() const {
 // Conditions, candidates and gates from the state.
 void Engine::rebuild() {
     const NetTables& n = *tables_;
-    hot_.assign(n.transitions.size(), Hot{});
+    for (Hot& h : hot_) {
+        h.unsatisfied = 0;
+        h.candidate = 0;
+        h.ticket_draws = 0;
+    }
     levels_.assign(n.level_priority.size(), Level{});
     marked_.assign(n.specials.size(), 0);
     touched_.assign(n.specials.size(), 0);
@@ -165,11 +170,11 @@ void Engine::rebuild() {
         }
     };
     for (std::uint32_t p = 0; p < n.places.size(); ++p) {
-        count(n.ready_watchers.row(p), state_.counts[p].ready);
-        count(n.total_watchers.row(p), state_.counts[p].total);
+        count(n.ready_watchers(p), state_.counts[p].ready);
+        count(n.total_watchers(p), state_.counts[p].total);
     }
     for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
-        if (n.flags[t] != 0) {
+        if (n.transition[t].flags != 0) {
             touch(t);
         } else if (hot_[t].unsatisfied == 0) {
             enter(t);
@@ -180,7 +185,7 @@ void Engine::rebuild() {
 void Engine::enter(std::uint32_t t) {
     Hot& h = hot_[t];
     h.candidate |= kFresh;
-    Level& l = levels_[tables_->level[t]];
+    Level& l = levels_[tables_->transition[t].level];
     if (l.fresh.size() > 2 * l.live_fresh + 64) {
         std::erase_if(l.fresh,
                       [this](const Fresh& f) { return hot_[f.transition].candidate != f.stamp; });
@@ -195,7 +200,7 @@ void Engine::leave(std::uint32_t t) {
     if (status == 0) {
         return;
     }
-    const std::uint32_t level = tables_->level[t];
+    const std::uint32_t level = tables_->transition[t].level;
     Level& l = levels_[level];
     if (status == kFresh) {
         if (--l.live_fresh == 0) {
@@ -217,7 +222,7 @@ void Engine::walk_watchers(std::span<const Watcher> row, std::uint32_t from, std
             continue;
         }
         const std::uint32_t t = w.transition & ~Watcher::kInhibits;
-        const bool gated = (tables_->flags[t] & kGated) != 0;
+        const bool gated = (tables_->transition[t].flags & kGated) != 0;
         if (is != ((w.transition & Watcher::kInhibits) != 0)) {
             if (--hot_[t].unsatisfied == 0) {
                 gated ? touch(t) : enter(t);
@@ -229,8 +234,8 @@ void Engine::walk_watchers(std::span<const Watcher> row, std::uint32_t from, std
 }
 
 inline void Engine::ready_changed(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
-    walk_watchers(tables_->ready_watchers.row(p), from, to);
-    if (dependents_) {
+    walk_watchers(tables_->ready_watchers(p), from, to);
+    if (tables_->place[p].has_dependents) {
         for (const std::uint32_t t : tables_->place_dependents.row(p)) {
             touch(t);
         }
@@ -238,8 +243,8 @@ inline void Engine::ready_changed(std::uint32_t p, std::uint32_t from, std::uint
 }
 
 inline void Engine::total_changed(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
-    walk_watchers(tables_->total_watchers.row(p), from, to);
-    if (dependents_) {
+    walk_watchers(tables_->total_watchers(p), from, to);
+    if (tables_->place[p].has_dependents) {
         for (const std::uint32_t t : tables_->place_dependents.row(p)) {
             touch(t);
         }
@@ -277,7 +282,7 @@ std::uint32_t Engine::select() {
             l.fresh.pop_back();
         }
         const std::uint32_t t = l.fresh.back().transition;
-        ++state_.ticket_draws[t];
+        ++hot_[t].ticket_draws;
         leave(t);
         return t;
     }
@@ -286,9 +291,9 @@ std::uint32_t Engine::select() {
 
 // -ln(u) / odds, the t's next ticket.
 double Engine::ticket(std::uint32_t t) {
-    const double u = uniform_from_bits(random_bits(ticket_keys_[t], state_.ticket_draws[t]++));
+    const double u = uniform_from_bits(random_bits(hot_[t].ticket_key, hot_[t].ticket_draws++));
     const double e = -puppetri::log(u);
-    return (tables_->flags[t] & kHasOdds) != 0 ? e / odds(t) : e;
+    return (tables_->transition[t].flags & kHasOdds) != 0 ? e / odds(t) : e;
 }
 
 // Logarithms that could be put off so far.
@@ -302,6 +307,24 @@ void Engine::settle_lottery(Lottery& lottery) {
     }
 }
 
+// The next winners are near the root of the heap. Large nets wait for memory, not for arithmetic: what their firings
+// will read is asked for now, rows first, then arcs, then places.
+void Engine::look_ahead(const Lottery& lottery) const {
+    const NetTables& n = *tables_;
+    for (std::size_t i = 3; i < 7; ++i) {
+        __builtin_prefetch(&n.transition[lottery.tickets[i].transition]);
+        __builtin_prefetch(&hot_[lottery.tickets[i].transition]);
+    }
+    for (std::size_t i = 1; i < 3; ++i) {
+        __builtin_prefetch(&n.arcs[n.transition[lottery.tickets[i].transition].takes]);
+    }
+    const TransitionRow& next = n.transition[lottery.tickets[0].transition];
+    for (std::uint32_t i = next.takes; i < next.end && i < next.takes + 6; ++i) {
+        __builtin_prefetch(&n.place[n.arcs[i].place]);
+        __builtin_prefetch(&state_.counts[n.arcs[i].place]);
+    }
+}
+
 // Who became fireable since the last firing draws a ticket, counted from the lottery's clock; the
 // least wins and sets the clock; losers keep theirs. When no loser is left, the clock starts again
 // from 0: what has no partner to be compared with needs no common origin. As long as all tickets
@@ -312,7 +335,7 @@ std::uint32_t Engine::race(std::uint32_t level) {
     Lottery& lottery = state_.lotteries[level];
     const auto before = [this](const Ticket& a, const Ticket& b) {
         return a.key != b.key ? a.key < b.key
-                              : tables_->path_hash[a.transition] < tables_->path_hash[b.transition];
+                              : tables_->transition[a.transition].path_hash < tables_->transition[b.transition].path_hash;
     };
     if (l.live_fresh != 0) {
         if (l.live_raced == 0) {
@@ -330,7 +353,7 @@ std::uint32_t Engine::race(std::uint32_t level) {
             const std::uint32_t t = f.transition;
             const double key =
                 lottery.lazy
-                    ? -uniform_from_bits(random_bits(ticket_keys_[t], state_.ticket_draws[t]++))
+                    ? -uniform_from_bits(random_bits(h.ticket_key, h.ticket_draws++))
                     : lottery.clock + ticket(t);
             heap_push<2>(lottery.tickets, {key, t, h.candidate}, before);
         }
@@ -342,6 +365,9 @@ std::uint32_t Engine::race(std::uint32_t level) {
         const Ticket winner = lottery.tickets.front();
         heap_pop<2>(lottery.tickets, before);
         if (hot_[winner.transition].candidate == winner.stamp) {
+            if (lottery.tickets.size() >= kManyTickets) {
+                look_ahead(lottery);
+            }
             (lottery.lazy ? lottery.last_u : lottery.clock) =
                 lottery.lazy ? -winner.key : winner.key;
             leave(winner.transition);
@@ -391,27 +417,27 @@ std::uint32_t Engine::ask_tie(std::uint32_t level) {
 // ----------------------------------------------------------------------------------------------------------
 
 void Engine::take_plain(std::uint32_t t) {
-    for (const Weighted& w : tables_->takes.row(t)) {
+    for (const Weighted& w : tables_->takes(t)) {
         Counts& c = state_.counts[w.place];
         const Counts was = c;
         c.ready -= w.weight;
         c.total -= w.weight;
         ready_changed(w.place, was.ready, was.ready - w.weight);
-        if (tables_->place_kind[w.place] != PlaceKind::kCount) {
+        if (tables_->place[w.place].kind != PlaceKind::kCount) {
             total_changed(w.place, was.total, was.total - w.weight);
         }
     }
 }
 
 void Engine::give_plain(std::uint32_t t) {
-    for (const Weighted& w : tables_->gives.row(t)) {
+    for (const Weighted& w : tables_->gives(t)) {
         Counts& c = state_.counts[w.place];
         if (c.total + w.weight > 0x7FFF'FFFF) {
             fail_place(w.place, "too-many-tokens", "more than 2147483647 tokens",
                        "bound the place");
             return;
         }
-        if (tables_->place_kind[w.place] == PlaceKind::kCount) {
+        if (tables_->place[w.place].kind == PlaceKind::kCount) {
             const Counts was = c;
             c.ready += w.weight;
             c.total += w.weight;
@@ -423,7 +449,7 @@ void Engine::give_plain(std::uint32_t t) {
 }
 
 void Engine::give_timed(std::uint32_t p, std::uint32_t weight) {
-    const std::uint32_t number = tables_->place_duration[p];
+    const std::uint32_t number = tables_->place[p].duration;
     const bool constant =
         number == kNoIndex || tables_->durations[number].kind == DurationKind::kConstant;
     for (std::uint32_t k = 0; k < weight; ++k) {
@@ -468,20 +494,20 @@ void Engine::add_timed(std::uint32_t p, std::int64_t ticks, std::uint32_t fifo) 
 void Engine::fire(std::uint32_t t) {
     ++state_.firings;
     state_.last = t;
-    state_.log_hash = log_hash_step(state_.log_hash, state_.now, tables_->path_hash[t]);
+    state_.log_hash = log_hash_step(state_.log_hash, state_.now, tables_->transition[t].path_hash);
     if (++state_.instant_firings + 1024 > options_.firings_per_instant) {
         watch_instant(t);
     }
     if (options_.listener != nullptr) {
         options_.listener->fired({state_.now}, {t});
     }
-    const std::uint8_t flags = tables_->flags[t];
+    const std::uint8_t flags = tables_->transition[t].flags;
     if ((flags & kFiresSpecially) != 0) {
         if ((flags & kOnlyDelayed) == 0) {
             fire_special(t);
             return;
         }
-        state_.clocks[tables_->specials[tables_->special_of[t]].delay].clear();
+        state_.clocks[tables_->specials[tables_->transition[t].special].delay].clear();
     }
     take_plain(t);
     if (!touch_list_.empty()) {
@@ -492,7 +518,7 @@ void Engine::fire(std::uint32_t t) {
 }
 
 void Engine::finish_firing(std::uint32_t t) {
-    if ((tables_->flags[t] & kGated) != 0) {
+    if ((tables_->transition[t].flags & kGated) != 0) {
         touch(t);
     } else if (hot_[t].unsatisfied == 0 && (hot_[t].candidate & kStatus) == 0) {
         enter(t);
@@ -567,6 +593,24 @@ void Engine::ripen(const Pending& p) {
     touch(tables_->delays[index].transition);
 }
 
+// The same for tokens that are about to be ready.
+void Engine::look_ahead(const PendingRing& ring) const {
+    const NetTables& n = *tables_;
+    const auto place = [&](std::uint32_t i) -> std::uint32_t {
+        const Pending& p = ring.at(i);
+        return (p.what & ~Pending::kIndexMask) == Pending::kPlain ? p.what : 0;
+    };
+    __builtin_prefetch(&n.place[place(12)]);
+    __builtin_prefetch(&state_.counts[place(12)]);
+    __builtin_prefetch(&n.watchers[n.place[place(8)].ready]);
+    const std::uint32_t soon = place(4);
+    if (n.place[soon].ready != n.place[soon].total) {
+        const std::uint32_t t = n.watchers[n.place[soon].ready].transition & ~Watcher::kInhibits;
+        __builtin_prefetch(&hot_[t]);
+        __builtin_prefetch(&n.transition[t]);
+    }
+}
+
 void Engine::advance_to(std::int64_t at) {
     state_.now = at;
     state_.instant_firings = 0;
@@ -575,6 +619,9 @@ void Engine::advance_to(std::int64_t at) {
         while (ring.size != 0 && ring.front().at <= at) {
             const Pending p = ring.front();
             ring.pop();
+            if (ring.size >= kManyTickets) {
+                look_ahead(ring);
+            }
             ripen(p);
         }
     }

@@ -66,13 +66,10 @@ const Diagnostics& Net::notes() const { return tables_->notes; }
 
 std::size_t Net::hot_bytes() const {
     const NetTables& t = *tables_;
-    const auto rows = [](const auto& r) {
-        return r.starts.size() * 4 + r.items.size() * sizeof(r.items[0]);
-    };
-    return t.place_kind.size() + 4 * (t.place_duration.size() + t.place_rich.size()) +
-           rows(t.ready_watchers) + rows(t.total_watchers) + rows(t.place_dependents) +
-           rows(t.takes) + rows(t.gives) + t.flags.size() + 4 * t.special_of.size() +
-           2 * t.level.size() + 8 * t.path_hash.size();
+    return t.place.size() * sizeof(PlaceRow) + t.transition.size() * sizeof(TransitionRow) +
+           t.watchers.size() * sizeof(Watcher) + t.arcs.size() * sizeof(Weighted) +
+           4 * (t.place_rich.size() + t.place_dependents.starts.size() +
+                t.place_dependents.items.size());
 }
 
 }  // namespace puppetri::net

@@ -10,7 +10,7 @@
 namespace puppetri::net {
 
 void Engine::touch(std::uint32_t t) {
-    const std::uint32_t s = tables_->special_of[t];
+    const std::uint32_t s = tables_->transition[t].special;
     if (touched_[s] == 0) {
         touched_[s] = 1;
         touch_list_.push_back(t);
@@ -68,7 +68,7 @@ bool Engine::offered_to(const Special& s) const {
 }
 
 void Engine::gate_closed(std::uint32_t t) {
-    const std::uint32_t number = tables_->special_of[t];
+    const std::uint32_t number = tables_->transition[t].special;
     leave(t);
     if (marked_[number] != 0) {
         marked_[number] = 0;
@@ -81,9 +81,9 @@ void Engine::gate_closed(std::uint32_t t) {
 void Engine::look_again(bool intermediate) {
     for (std::size_t i = 0; i < touch_list_.size() && !faulted_; ++i) {
         const std::uint32_t t = touch_list_[i];
-        const std::uint32_t number = tables_->special_of[t];
+        const std::uint32_t number = tables_->transition[t].special;
         const Special& s = tables_->specials[number];
-        if ((tables_->flags[t] & kOnlyDelayed) != 0) {
+        if ((tables_->transition[t].flags & kOnlyDelayed) != 0) {
             if (!intermediate) {
                 look_at_delay(t, number, s.delay);
             }
@@ -133,10 +133,10 @@ void Engine::look_again(bool intermediate) {
 }
 
 double Engine::odds(std::uint32_t t) {
-    if ((tables_->flags[t] & kHasOdds) == 0) {
+    if ((tables_->transition[t].flags & kHasOdds) == 0) {
         return 1;
     }
-    const Special& s = tables_->specials[tables_->special_of[t]];
+    const Special& s = tables_->specials[tables_->transition[t].special];
     if (!s.odds.valid()) {
         return s.constant_odds;
     }
@@ -234,7 +234,7 @@ void Engine::set_clocks(std::uint32_t delay, std::uint32_t wanted) {
             ticks = suspended->at;
             clocks.erase(suspended);
         } else {
-            const Special& s = tables_->specials[tables_->special_of[d.transition]];
+            const Special& s = tables_->specials[tables_->transition[d.transition].special];
             if (s.searches) {
                 bind(s, false);
             }
@@ -277,7 +277,7 @@ bool Engine::module_is_clean(const Special& s) {
 
 // Everything of the new state that reads the old one is computed before anything changes.
 void Engine::fire_special(std::uint32_t t) {
-    const Special& s = tables_->specials[tables_->special_of[t]];
+    const Special& s = tables_->specials[tables_->transition[t].special];
     chosen_.clear();
     if (!s.arcs.empty() && !bind(s, true)) {
         if (!faulted_) {
@@ -354,7 +354,7 @@ void Engine::fire_special(std::uint32_t t) {
             c.total -= was.ready;
             c.ready = 0;
             change_ready(arc.place, was.ready, 0);
-            if (tables_->place_kind[arc.place] != PlaceKind::kCount) {
+            if (tables_->place[arc.place].kind != PlaceKind::kCount) {
                 change_total(arc.place, was.total, was.total - was.ready);
             }
         }

@@ -490,7 +490,7 @@ Checked<State> read_state(const Net& net, std::span<const std::uint8_t> bytes) {
                 Ticket t;
                 t.key = std::bit_cast<double>(r.word());
                 t.transition = r.below(transitions);
-                if (r.fine() && (n.level[t.transition] != l || !(t.key == t.key))) {
+                if (r.fine() && (n.transition[t.transition].level != l || !(t.key == t.key))) {
                     return bad("a ticket of another priority");
                 }
                 s.lotteries[l].tickets.push_back(t);

@@ -97,9 +97,9 @@ void Engine::add_token(std::uint32_t p, std::span<const Value> attributes, std::
     }
     if (table.action.valid() && options_.host != nullptr) {
         token.activity = state_.activities++;
-        const DurationKind kind = tables_->place_duration[p] == kNoIndex
+        const DurationKind kind = tables_->place[p].duration == kNoIndex
                                       ? DurationKind::kConstant
-                                      : tables_->durations[tables_->place_duration[p]].kind;
+                                      : tables_->durations[tables_->place[p].duration].kind;
         const bool asks = kind == DurationKind::kAuto && !ready && ticks == kOpen;
         const std::int64_t given = asks ? -1 : ticks == kOpen ? SimTime::never().ticks : ticks;
         const SimTime said = options_.host->begin(table.action, {token.activity}, {state_.now},
@@ -163,7 +163,7 @@ void Engine::add_token(std::uint32_t p, std::span<const Value> attributes, std::
         pending.at = token.ready_at;
         pending.what = Pending::kToken | rich;
         pending.slot = slot;
-        const std::uint32_t number = tables_->place_duration[p];
+        const std::uint32_t number = tables_->place[p].duration;
         const std::uint32_t fifo = number == kNoIndex ? kNoIndex : tables_->durations[number].fifo;
         if (fifo != kNoIndex && ticks == tables_->durations[number].ticks &&
             token.ready_at == state_.now + ticks) {
@@ -280,7 +280,7 @@ void Engine::give_special(const OutputTable& out, std::size_t first) {
         if (!sibling_ticks_.empty() && k == 0) {
             sibling_ticks_[out.place] = ticks;
         }
-        if (tables_->place_kind[out.place] == PlaceKind::kCount) {
+        if (tables_->place[out.place].kind == PlaceKind::kCount) {
             Counts& c = state_.counts[out.place];
             const Counts was = c;
             ++c.ready;
@@ -289,7 +289,7 @@ void Engine::give_special(const OutputTable& out, std::size_t first) {
         } else {
             // A duration of its own may end before one that was pushed earlier: never into the
             // ring.
-            const std::uint32_t number = tables_->place_duration[out.place];
+            const std::uint32_t number = tables_->place[out.place].duration;
             const bool ring = !out.lasts.valid() && number != kNoIndex &&
                               tables_->durations[number].kind == DurationKind::kConstant;
             add_timed(out.place, ticks, ring ? tables_->durations[number].fifo : kNoIndex);
@@ -323,13 +323,13 @@ void Engine::start_marking() {
                 sibling_ticks_[p] = ticks;
             }
             Counts& c = state_.counts[p];
-            if (tables_->place_kind[p] == PlaceKind::kCount) {
+            if (tables_->place[p].kind == PlaceKind::kCount) {
                 const Counts was = c;
                 ++c.ready;
                 ++c.total;
                 change_ready(p, was.ready, was.ready + 1);
             } else {
-                const std::uint32_t number = tables_->place_duration[p];
+                const std::uint32_t number = tables_->place[p].duration;
                 add_timed(p, ticks,
                           number == kNoIndex ? kNoIndex : tables_->durations[number].fifo);
             }

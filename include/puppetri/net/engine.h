@@ -79,6 +79,8 @@ class Engine final : private Code::Reader {
     struct Hot {
         std::uint32_t unsatisfied = 0;  // conditions on counts that do not hold
         std::uint32_t candidate = 0;  // stamp * 4 + 0 no candidate, 1 without ticket, 2 with ticket
+        std::uint64_t ticket_key = 0;
+        std::uint64_t ticket_draws = 0;
     };
     struct Fresh {
         std::uint32_t transition, stamp;
@@ -106,6 +108,8 @@ class Engine final : private Code::Reader {
     void walk_watchers(std::span<const Watcher> row, std::uint32_t from, std::uint32_t to);
     std::uint32_t select();
     std::uint32_t race(std::uint32_t level);
+    void look_ahead(const Lottery& lottery) const;
+    void look_ahead(const PendingRing& ring) const;
     std::uint32_t ask_tie(std::uint32_t level);
     static void settle_lottery(Lottery& lottery);
     double ticket(std::uint32_t t);
@@ -198,8 +202,7 @@ class Engine final : private Code::Reader {
     // Scratch: computed from the state, or meaningless between two firings.
     std::vector<Hot> hot_;
     std::vector<Level> levels_;
-    bool dependents_ = false;  // some transition depends on more than counts
-    std::vector<std::uint64_t> ticket_keys_, duration_keys_, delay_keys_, token_keys_;
+    std::vector<std::uint64_t> duration_keys_, delay_keys_, token_keys_;
     std::vector<std::uint8_t> marked_;   // per special
     std::vector<double> last_odds_;      // per special: of its ticket
     std::vector<std::uint8_t> touched_;  // per special

@@ -146,7 +146,7 @@ struct State {
     std::vector<std::uint32_t> offer_users;  // transitions that have fired with it
 
     std::vector<Lottery> lotteries;  // one per priority
-    // How many numbers each stream has given.
+    // How many numbers each stream has given; those of tickets are kept by the engine and filled in by save().
     std::vector<std::uint64_t> ticket_draws, duration_draws, delay_draws, token_draws;
 };
 
