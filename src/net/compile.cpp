@@ -579,14 +579,27 @@ class Compiler {
         const Rows<Watcher> ready = make_rows(places, std::move(ready_watchers_));
         const Rows<Watcher> total = make_rows(places, std::move(total_watchers_));
         out_.place_dependents = make_rows(places, std::move(place_dependents_));
+        const auto with_gate = [&](Watcher w) {
+            if ((out_.transition[w.transition()].flags & kGated) != 0) {
+                w.word |= Watcher::kGated;
+            }
+            return w;
+        };
         out_.watchers.reserve(ready.items.size() + total.items.size());
         for (std::uint32_t p = 0; p < places; ++p) {
             PlaceRow& row = out_.place[p];
             row.ready = static_cast<std::uint32_t>(out_.watchers.size());
-            out_.watchers.insert(out_.watchers.end(), ready.row(p).begin(), ready.row(p).end());
+            for (const Watcher& w : ready.row(p)) {
+                out_.watchers.push_back(with_gate(w));
+            }
             row.total = static_cast<std::uint32_t>(out_.watchers.size());
-            out_.watchers.insert(out_.watchers.end(), total.row(p).begin(), total.row(p).end());
+            for (const Watcher& w : total.row(p)) {
+                out_.watchers.push_back(with_gate(w));
+            }
             row.end = static_cast<std::uint32_t>(out_.watchers.size());
+            if (row.ready != row.total) {
+                row.first = out_.watchers[row.ready];
+            }
             row.has_dependents = !out_.place_dependents.row(p).empty();
         }
         out_.datum_dependents =
@@ -664,7 +677,7 @@ class Compiler {
             h.add_u64(p.total).add_u64(p.end).add_u64(p.duration);
         }
         for (const Watcher& w : out_.watchers) {
-            h.add_u64(w.transition).add_u64(w.threshold);
+            h.add_u64(w.word).add_u64(w.threshold);
         }
         for (const std::int64_t p : priorities_) {
             h.add_i64(p);

@@ -164,9 +164,8 @@ void Engine::rebuild() {
     instant_log_.clear();
     const auto count = [this](std::span<const Watcher> row, std::uint32_t tokens) {
         for (const Watcher& w : row) {
-            const bool holds =
-                (tokens >= w.threshold) != ((w.transition & Watcher::kInhibits) != 0);
-            hot_[w.transition & ~Watcher::kInhibits].unsatisfied += holds ? 0 : 1;
+            const bool holds = (tokens >= w.threshold) != w.inhibits();
+            hot_[w.transition()].unsatisfied += holds ? 0 : 1;
         }
     };
     for (std::uint32_t p = 0; p < n.places.size(); ++p) {
@@ -185,7 +184,7 @@ void Engine::rebuild() {
 void Engine::enter(std::uint32_t t) {
     Hot& h = hot_[t];
     h.candidate |= kFresh;
-    Level& l = levels_[tables_->transition[t].level];
+    Level& l = levels_[level_of(t)];
     if (l.fresh.size() > 2 * l.live_fresh + 64) {
         std::erase_if(l.fresh,
                       [this](const Fresh& f) { return hot_[f.transition].candidate != f.stamp; });
@@ -200,7 +199,7 @@ void Engine::leave(std::uint32_t t) {
     if (status == 0) {
         return;
     }
-    const std::uint32_t level = tables_->transition[t].level;
+    const std::uint32_t level = level_of(t);
     Level& l = levels_[level];
     if (status == kFresh) {
         if (--l.live_fresh == 0) {
@@ -215,39 +214,48 @@ void Engine::leave(std::uint32_t t) {
     h.candidate = (h.candidate | kStatus) + 1;
 }
 
-void Engine::walk_watchers(std::span<const Watcher> row, std::uint32_t from, std::uint32_t to) {
-    for (const Watcher& w : row) {
-        const bool is = to >= w.threshold;
-        if ((from >= w.threshold) == is) {
-            continue;
+// A condition on a count begins or ceases to hold.
+inline void Engine::cross(const Watcher& w, std::uint32_t from, std::uint32_t to) {
+    const bool is = to >= w.threshold;
+    if ((from >= w.threshold) == is) {
+        return;
+    }
+    const std::uint32_t t = w.transition();
+    if (is != w.inhibits()) {
+        if (--hot_[t].unsatisfied == 0) {
+            w.gated() ? touch(t) : enter(t);
         }
-        const std::uint32_t t = w.transition & ~Watcher::kInhibits;
-        const bool gated = (tables_->transition[t].flags & kGated) != 0;
-        if (is != ((w.transition & Watcher::kInhibits) != 0)) {
-            if (--hot_[t].unsatisfied == 0) {
-                gated ? touch(t) : enter(t);
-            }
-        } else if (hot_[t].unsatisfied++ == 0) {
-            gated ? gate_closed(t) : leave(t);
-        }
+    } else if (hot_[t].unsatisfied++ == 0) {
+        w.gated() ? gate_closed(t) : leave(t);
     }
 }
 
 inline void Engine::ready_changed(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
-    walk_watchers(tables_->ready_watchers(p), from, to);
-    if (tables_->place[p].has_dependents) {
-        for (const std::uint32_t t : tables_->place_dependents.row(p)) {
-            touch(t);
+    const PlaceRow& row = tables_->place[p];
+    if (row.ready != row.total) {
+        cross(row.first, from, to);
+        for (std::uint32_t i = row.ready + 1; i < row.total; ++i) {
+            cross(tables_->watchers[i], from, to);
         }
+    }
+    if (row.has_dependents) {
+        touch_dependents(p);
     }
 }
 
 inline void Engine::total_changed(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
-    walk_watchers(tables_->total_watchers(p), from, to);
-    if (tables_->place[p].has_dependents) {
-        for (const std::uint32_t t : tables_->place_dependents.row(p)) {
-            touch(t);
-        }
+    const PlaceRow& row = tables_->place[p];
+    for (std::uint32_t i = row.total; i < row.end; ++i) {
+        cross(tables_->watchers[i], from, to);
+    }
+    if (row.has_dependents) {
+        touch_dependents(p);
+    }
+}
+
+void Engine::touch_dependents(std::uint32_t p) {
+    for (const std::uint32_t t : tables_->place_dependents.row(p)) {
+        touch(t);
     }
 }
 
@@ -602,13 +610,7 @@ void Engine::look_ahead(const PendingRing& ring) const {
     };
     __builtin_prefetch(&n.place[place(12)]);
     __builtin_prefetch(&state_.counts[place(12)]);
-    __builtin_prefetch(&n.watchers[n.place[place(8)].ready]);
-    const std::uint32_t soon = place(4);
-    if (n.place[soon].ready != n.place[soon].total) {
-        const std::uint32_t t = n.watchers[n.place[soon].ready].transition & ~Watcher::kInhibits;
-        __builtin_prefetch(&hot_[t]);
-        __builtin_prefetch(&n.transition[t]);
-    }
+    __builtin_prefetch(&hot_[n.place[place(5)].first.transition()]);
 }
 
 void Engine::advance_to(std::int64_t at) {

@@ -105,7 +105,11 @@ class Engine final : private Code::Reader {
     void change_ready(std::uint32_t p, std::uint32_t from, std::uint32_t to);  // for other files
     void change_total(std::uint32_t p, std::uint32_t from, std::uint32_t to);
     bool somebody_can_fire() const;
-    void walk_watchers(std::span<const Watcher> row, std::uint32_t from, std::uint32_t to);
+    void cross(const Watcher& w, std::uint32_t from, std::uint32_t to);
+    void touch_dependents(std::uint32_t p);
+    std::uint32_t level_of(std::uint32_t t) const {
+        return levels_.size() == 1 ? 0 : tables_->transition[t].level;
+    }
     std::uint32_t select();
     std::uint32_t race(std::uint32_t level);
     void look_ahead(const Lottery& lottery) const;

@@ -40,9 +40,12 @@ struct Weighted {
 
 // A transition that waits for a count: at least `threshold`, or (inhibits) fewer.
 struct Watcher {
-    std::uint32_t transition = 0;  // the uppermost bit: inhibits
+    std::uint32_t word = 0;  // the transition; the uppermost bits: inhibits, and (of the transition) gated
     std::uint32_t threshold = 1;
-    static constexpr std::uint32_t kInhibits = 1u << 31;
+    static constexpr std::uint32_t kInhibits = 1u << 31, kGated = 1u << 30;
+    std::uint32_t transition() const { return word & (kGated - 1); }
+    bool inhibits() const { return (word & kInhibits) != 0; }
+    bool gated() const { return (word & kGated) != 0; }
     bool operator==(const Watcher&) const = default;
 };
 

@@ -146,6 +146,7 @@ struct PlaceRow {
     std::uint32_t total = 0;         // where those of the number of tokens (never of kCount: there both are one),
     std::uint32_t end = 0;           // and where they end
     std::uint32_t duration = kNoIndex;  // of kTimed and kRich: number in `durations`; kNoIndex: 0
+    Watcher first;                   // a copy of watchers[ready], if there is one
     PlaceKind kind = PlaceKind::kCount;
     bool has_dependents = false;
 };
