@@ -16,7 +16,8 @@ namespace puppetri::net {
 
 namespace {
 
-constexpr std::size_t kManyTickets = 1024;  // from here on the tables are no longer in the nearest cache
+constexpr std::size_t kManyTickets =
+    1024;  // from here on the tables are no longer in the nearest cache
 constexpr std::uint32_t kFresh = 1, kRaced = 2, kStatus = 3;
 
 bool earlier(const Pending& a, const Pending& b) { return a.at < b.at; }
@@ -44,8 +45,9 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
     const NetTables& n = *tables_;
     const std::uint64_t seed = options.seed;
     hot_.resize(n.transitions.size());
-    for (std::uint32_t t = 0; t < n.transitions.size() && random_; ++t) {
-        hot_[t].ticket_key = stream_key(seed, n.transitions.path(t), "ticket");
+    for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
+        hot_[t].row = n.transition[t];
+        hot_[t].ticket_key = random_ ? stream_key(seed, n.transitions.path(t), "ticket") : 0;
     }
     for (const std::uint32_t p : n.stream_place) {
         duration_keys_.push_back(stream_key(seed, n.places.path(p), "duration"));
@@ -173,7 +175,7 @@ void Engine::rebuild() {
         count(n.total_watchers(p), state_.counts[p].total);
     }
     for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
-        if (n.transition[t].flags != 0) {
+        if (hot_[t].row.flags != 0) {
             touch(t);
         } else if (hot_[t].unsatisfied == 0) {
             enter(t);
@@ -208,8 +210,11 @@ void Engine::leave(std::uint32_t t) {
     } else if (--l.live_raced == 0) {
         Lottery& lottery = state_.lotteries[level];
         lottery.tickets.clear();
+        lottery.run.clear();
+        lottery.head = 0;
         lottery.clock = 0;
         lottery.lazy = false;
+        lottery.front_key = -1;
     }
     h.candidate = (h.candidate | kStatus) + 1;
 }
@@ -301,56 +306,58 @@ std::uint32_t Engine::select() {
 double Engine::ticket(std::uint32_t t) {
     const double u = uniform_from_bits(random_bits(hot_[t].ticket_key, hot_[t].ticket_draws++));
     const double e = -puppetri::log(u);
-    return (tables_->transition[t].flags & kHasOdds) != 0 ? e / odds(t) : e;
+    return (hot_[t].row.flags & kHasOdds) != 0 ? e / odds(t) : e;
 }
 
-// Logarithms that could be put off so far.
-void Engine::settle_lottery(Lottery& lottery) {
-    if (lottery.lazy) {
-        for (Ticket& t : lottery.tickets) {
-            t.key = -puppetri::log(-t.key);  // keeps the order of the heap
-        }
-        lottery.clock = lottery.last_u < 1 ? -puppetri::log(lottery.last_u) : 0;
-        lottery.lazy = false;
-    }
-}
-
-// The next winners are near the root of the heap. Large nets wait for memory, not for arithmetic: what their firings
-// will read is asked for now, rows first, then arcs, then places.
+// The run after its first: large nets wait for memory, not for arithmetic, so what the next firings
+// will read is asked for some firings ahead: rows first, then arcs, then places.
 void Engine::look_ahead(const Lottery& lottery) const {
     const NetTables& n = *tables_;
-    for (std::size_t i = 3; i < 7; ++i) {
-        __builtin_prefetch(&n.transition[lottery.tickets[i].transition]);
-        __builtin_prefetch(&hot_[lottery.tickets[i].transition]);
+    const Ticket* next = lottery.run.data() + lottery.head;
+    const std::size_t left = lottery.run.size() - lottery.head;
+    if (left <= 16) {
+        return;
     }
-    for (std::size_t i = 1; i < 3; ++i) {
-        __builtin_prefetch(&n.arcs[n.transition[lottery.tickets[i].transition].takes]);
-    }
-    const TransitionRow& next = n.transition[lottery.tickets[0].transition];
-    for (std::uint32_t i = next.takes; i < next.end && i < next.takes + 6; ++i) {
+    __builtin_prefetch(&hot_[next[16].transition]);
+    __builtin_prefetch(&n.arcs[hot_[next[10].transition].row.takes]);
+    const TransitionRow& row = hot_[next[5].transition].row;
+    for (std::uint32_t i = row.takes; i < row.end && i < row.takes + 6; ++i) {
         __builtin_prefetch(&n.place[n.arcs[i].place]);
         __builtin_prefetch(&state_.counts[n.arcs[i].place]);
     }
 }
 
+// The lottery as tickets alone, for keeping.
+void Engine::settle_lottery(Lottery& lottery) {
+    for (std::size_t i = lottery.head; i < lottery.run.size(); ++i) {
+        Ticket t = lottery.run[i];
+        t.key = -puppetri::log(-t.key);
+        lottery.tickets.push_back(t);
+    }
+    if (lottery.lazy) {
+        lottery.clock = -puppetri::log(lottery.last_u);
+    }
+    lottery.run.clear();
+    lottery.head = 0;
+    lottery.lazy = false;
+    lottery.front_key = -1;
+}
+
 // Who became fireable since the last firing draws a ticket, counted from the lottery's clock; the
 // least wins and sets the clock; losers keep theirs. When no loser is left, the clock starts again
-// from 0: what has no partner to be compared with needs no common origin. As long as all tickets
-// count from 0 and odds are 1, the least ticket is that of the greatest u, and the logarithm waits
-// until a newcomer has to be compared.
+// from 0: what has no partner to be compared with needs no common origin.
 std::uint32_t Engine::race(std::uint32_t level) {
     Level& l = levels_[level];
     Lottery& lottery = state_.lotteries[level];
     const auto before = [this](const Ticket& a, const Ticket& b) {
         return a.key != b.key ? a.key < b.key
-                              : tables_->transition[a.transition].path_hash < tables_->transition[b.transition].path_hash;
+                              : hot_[a.transition].row.path_hash < hot_[b.transition].row.path_hash;
     };
     if (l.live_fresh != 0) {
-        if (l.live_raced == 0) {
-            lottery.lazy = tables_->level_has_odds[level] == 0;
-            lottery.last_u = 1;
-        } else {
-            settle_lottery(lottery);
+        const bool together = l.live_raced == 0 && tables_->level_has_odds[level] == 0;
+        if (lottery.lazy) {
+            lottery.clock = -puppetri::log(lottery.last_u);
+            lottery.lazy = false;
         }
         for (const Fresh& f : l.fresh) {
             Hot& h = hot_[f.transition];
@@ -359,29 +366,56 @@ std::uint32_t Engine::race(std::uint32_t level) {
             }
             h.candidate += kRaced - kFresh;
             const std::uint32_t t = f.transition;
-            const double key =
-                lottery.lazy
-                    ? -uniform_from_bits(random_bits(h.ticket_key, h.ticket_draws++))
-                    : lottery.clock + ticket(t);
-            heap_push<2>(lottery.tickets, {key, t, h.candidate}, before);
+            if (together) {
+                const double u = uniform_from_bits(random_bits(h.ticket_key, h.ticket_draws++));
+                lottery.run.push_back({-u, t, h.candidate});
+            } else {
+                heap_push<2>(lottery.tickets, {lottery.clock + ticket(t), t, h.candidate}, before);
+            }
+        }
+        if (together) {
+            std::sort(lottery.run.begin(), lottery.run.end(), before);
         }
         l.live_raced += l.live_fresh;
         l.live_fresh = 0;
         l.fresh.clear();
     }
-    for (;;) {
-        const Ticket winner = lottery.tickets.front();
-        heap_pop<2>(lottery.tickets, before);
-        if (hot_[winner.transition].candidate == winner.stamp) {
-            if (lottery.tickets.size() >= kManyTickets) {
-                look_ahead(lottery);
-            }
-            (lottery.lazy ? lottery.last_u : lottery.clock) =
-                lottery.lazy ? -winner.key : winner.key;
-            leave(winner.transition);
-            return winner.transition;
-        }
+    while (lottery.head < lottery.run.size() &&
+           hot_[lottery.run[lottery.head].transition].candidate !=
+               lottery.run[lottery.head].stamp) {
+        ++lottery.head;
+        lottery.front_key = -1;
     }
+    while (!lottery.tickets.empty() &&
+           hot_[lottery.tickets.front().transition].candidate != lottery.tickets.front().stamp) {
+        heap_pop<2>(lottery.tickets, before);
+    }
+    bool from_run = lottery.head < lottery.run.size();
+    if (from_run && !lottery.tickets.empty()) {
+        Ticket first = lottery.run[lottery.head];
+        if (lottery.front_key < 0) {
+            lottery.front_key = -puppetri::log(-first.key);
+        }
+        first.key = lottery.front_key;
+        from_run = before(first, lottery.tickets.front());
+    }
+    std::uint32_t winner = 0;
+    if (from_run) {
+        winner = lottery.run[lottery.head].transition;
+        lottery.last_u = -lottery.run[lottery.head].key;
+        lottery.lazy = lottery.front_key < 0;
+        lottery.clock = lottery.front_key;
+        lottery.front_key = -1;
+        ++lottery.head;
+        look_ahead(lottery);
+    } else {
+        winner = lottery.tickets.front().transition;
+        lottery.clock = lottery.tickets.front().key;
+        lottery.lazy = false;
+        heap_pop<2>(lottery.tickets, before);
+    }
+    leave(winner);
+    return winner;
 }
 
 std::uint32_t Engine::ask_tie(std::uint32_t level) {
@@ -393,9 +427,9 @@ std::uint32_t Engine::ask_tie(std::uint32_t level) {
         }
     }
     // Tickets of a random run that goes on under this chooser are void.
-    for (const Ticket& ticket : state_.lotteries[level].tickets) {
-        if (hot_[ticket.transition].candidate == ticket.stamp) {
-            options_list_.push_back(ticket.transition);
+    for (const Ticket& kept : state_.lotteries[level].tickets) {
+        if (hot_[kept.transition].candidate == kept.stamp) {
+            options_list_.push_back(kept.transition);
         }
     }
     std::sort(options_list_.begin(), options_list_.end(), [this](std::uint32_t a, std::uint32_t b) {
@@ -425,7 +459,7 @@ std::uint32_t Engine::ask_tie(std::uint32_t level) {
 // ----------------------------------------------------------------------------------------------------------
 
 void Engine::take_plain(std::uint32_t t) {
-    for (const Weighted& w : tables_->takes(t)) {
+    for (const Weighted& w : takes(t)) {
         Counts& c = state_.counts[w.place];
         const Counts was = c;
         c.ready -= w.weight;
@@ -438,7 +472,7 @@ void Engine::take_plain(std::uint32_t t) {
 }
 
 void Engine::give_plain(std::uint32_t t) {
-    for (const Weighted& w : tables_->gives(t)) {
+    for (const Weighted& w : gives(t)) {
         Counts& c = state_.counts[w.place];
         if (c.total + w.weight > 0x7FFF'FFFF) {
             fail_place(w.place, "too-many-tokens", "more than 2147483647 tokens",
@@ -502,20 +536,20 @@ void Engine::add_timed(std::uint32_t p, std::int64_t ticks, std::uint32_t fifo) 
 void Engine::fire(std::uint32_t t) {
     ++state_.firings;
     state_.last = t;
-    state_.log_hash = log_hash_step(state_.log_hash, state_.now, tables_->transition[t].path_hash);
+    state_.log_hash = log_hash_step(state_.log_hash, state_.now, hot_[t].row.path_hash);
     if (++state_.instant_firings + 1024 > options_.firings_per_instant) {
         watch_instant(t);
     }
     if (options_.listener != nullptr) {
         options_.listener->fired({state_.now}, {t});
     }
-    const std::uint8_t flags = tables_->transition[t].flags;
+    const std::uint8_t flags = hot_[t].row.flags;
     if ((flags & kFiresSpecially) != 0) {
         if ((flags & kOnlyDelayed) == 0) {
             fire_special(t);
             return;
         }
-        state_.clocks[tables_->specials[tables_->transition[t].special].delay].clear();
+        state_.clocks[tables_->specials[hot_[t].row.special].delay].clear();
     }
     take_plain(t);
     if (!touch_list_.empty()) {
@@ -526,7 +560,7 @@ void Engine::fire(std::uint32_t t) {
 }
 
 void Engine::finish_firing(std::uint32_t t) {
-    if ((tables_->transition[t].flags & kGated) != 0) {
+    if ((hot_[t].row.flags & kGated) != 0) {
         touch(t);
     } else if (hot_[t].unsatisfied == 0 && (hot_[t].candidate & kStatus) == 0) {
         enter(t);

@@ -110,14 +110,17 @@ struct Ticket {
     std::uint32_t stamp = 0;  // of the engine
 };
 
-// The race of one priority. While nobody has joined since its first draw (`lazy`), tickets of odds
-// 1 are compared by their uniform numbers, greatest first: keys are -u, the clock is -ln(last_u),
-// and no logarithm has been taken.
+// The race of one priority. Those who entered together when nobody was waiting are sorted by their uniform numbers,
+// greatest first, in `run`: of equal odds that is the order of their tickets -ln(u), and most logarithms are never
+// needed. Who comes later gets its ticket, counted from the clock, in the heap.
 struct Lottery {
+    std::vector<Ticket> run;      // keys are -u; from `head`; may hold stale ones
     std::vector<Ticket> tickets;  // a heap, least key first; may hold stale ones
-    double clock = 0;
-    bool lazy = false;
+    std::uint32_t head = 0;
+    bool lazy = false;            // the clock is -ln(last_u), not computed yet
     double last_u = 1;
+    double clock = 0;
+    double front_key = -1;        // the ticket of the run's first, once computed
 };
 
 struct State {
