@@ -6,6 +6,7 @@
 #include "puppetri/lang/format.h"
 
 #include <algorithm>
+#include <array>
 
 #include "puppetri/base/text.h"
 #include "token.h"
@@ -14,9 +15,11 @@ namespace puppetri::lang {
 namespace {
 
 constexpr std::size_t kIndent = 2, kContinuation = 4;
-// A statement longer than this is no row of a table, and a table wider than that is not laid out as
-// one.
-constexpr std::size_t kMaxRow = 110, kMaxWidth = 132;
+// A statement longer than this is no row of a table; a table wider than that is aligned in its
+// first columns only.
+constexpr std::size_t kMaxRow = 125, kMaxWidth = 140;
+constexpr int kColumns = 6;      // of a table, at most
+constexpr int kLastAligned = 4;  // what comes behind is different in every row
 
 struct Piece {
     std::uint32_t begin = 0, end = 0;
@@ -370,6 +373,9 @@ class Formatter {
                 if (column == 0 && pieces_[i - 1].kind == Kind::kColon) {
                     return at_least(kind == Kind::kArrow ? 2 : 1);
                 }
+                if (column == 2 && begins_clause(i)) {
+                    return at_least(3);
+                }
                 return kind == Kind::kArrow ? at_least(2) : column;
             case Kind::kCast:  // NAME: | kind | { ... }
                 if (column == 0 && pieces_[i - 1].kind == Kind::kColon) {
@@ -407,6 +413,36 @@ class Formatter {
                     default:
                         return column;
                 }
+        }
+    }
+
+    // Behind the outputs of a transition: two values side by side, or a clause right after the
+    // arrow.
+    bool begins_clause(std::size_t i) const {
+        if (!is_word(pieces_[i].kind)) {
+            return false;
+        }
+        if (pieces_[i - 1].kind != Kind::kArrow) {
+            return ends_operand(pieces_[i - 1].kind);
+        }
+        switch (pieces_[i].kind) {
+            case Kind::kPriority:
+            case Kind::kWhen:
+            case Kind::kWith:
+            case Kind::kWhile:
+            case Kind::kUnless:
+            case Kind::kOn:
+            case Kind::kAfter:
+            case Kind::kFor:
+            case Kind::kSet:
+            case Kind::kOdds:
+            case Kind::kRaises:
+            case Kind::kTogether:
+                return i + 1 < pieces_.size() && breaks_before(i + 1) == 0 &&
+                       !pieces_[i + 1].comment && pieces_[i + 1].kind != Kind::kPlus &&
+                       pieces_[i + 1].kind != Kind::kDot;
+            default:
+                return false;
         }
     }
 
@@ -453,36 +489,63 @@ class Formatter {
         }
     }
 
+    // Clauses stand two columns apart in a table, everything else one.
+    static std::size_t gap_before(Kind table, int column) {
+        const bool clause = (table == Kind::kPlace && column >= 2) ||
+                            (table == Kind::kArrow && column >= 3) ||
+                            (table == Kind::kRule && column >= 2);
+        return clause ? 2 : 1;
+    }
+
     void align(std::size_t begin, std::size_t end) {
-        std::vector<std::size_t> widths(8, 0);
-        for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t c = 0; c + 1 < lines_[i].cells.size(); ++c) {
-                const Cell& cell = lines_[i].cells[c];
-                widths[cell.column] = std::max(widths[cell.column], width(cell.text));
+        std::vector<std::string> rows;
+        for (int aligned = end - begin > 1 ? kLastAligned : 0; aligned >= 0; --aligned) {
+            rows = rows_of(begin, end, aligned);
+            const bool fits = std::all_of(rows.begin(), rows.end(), [](const std::string& row) {
+                return width(row) <= kMaxWidth;
+            });
+            if (fits) {
+                break;
             }
         }
-        std::vector<std::size_t> starts(9, 0);
-        for (std::size_t c = 0; c < widths.size(); ++c) {
-            starts[c + 1] = starts[c] + widths[c] + (widths[c] > 0 ? 1 : 0);
-        }
-        std::size_t widest = 0;
         for (std::size_t i = begin; i < end; ++i) {
-            const Cell& last = lines_[i].cells.back();
-            widest = std::max(widest, lines_[i].indent + starts[last.column] + width(last.text));
+            lines_[i].cells.assign(1, {0, std::move(rows[i - begin])});
         }
-        const bool table = end - begin > 1 && widest <= kMaxWidth;
+    }
+
+    // The lines with their columns up to `aligned` below each other; 0: as they come.
+    std::vector<std::string> rows_of(std::size_t begin, std::size_t end, int aligned) const {
+        std::array<std::size_t, kColumns> widths{}, starts{};
         for (std::size_t i = begin; i < end; ++i) {
-            std::string joined;
+            const std::vector<Cell>& cells = lines_[i].cells;
+            for (std::size_t c = 0; c + 1 < cells.size(); ++c) {
+                std::size_t& widest = widths[static_cast<std::size_t>(cells[c].column)];
+                widest = std::max(widest, width(cells[c].text));
+            }
+        }
+        const Kind table = lines_[begin].table;
+        std::size_t edge = widths[0];
+        for (int c = 1; c <= aligned; ++c) {
+            const auto column = static_cast<std::size_t>(c);
+            starts[column] = edge + gap_before(table, c);
+            edge = widths[column] > 0 ? starts[column] + widths[column] : edge;
+        }
+        std::vector<std::string> rows;
+        for (std::size_t i = begin; i < end; ++i) {
+            std::string row;
             for (const Cell& cell : lines_[i].cells) {
-                const std::size_t wanted = table ? starts[cell.column] : 0;
-                const std::size_t have = width(joined);
-                if (!joined.empty()) {
-                    joined.append(std::max<std::size_t>(1, wanted > have ? wanted - have : 0), ' ');
+                if (!row.empty()) {
+                    const std::size_t have = width(row),
+                                      least = aligned > 0 ? gap_before(table, cell.column) : 1;
+                    const std::size_t start =
+                        cell.column <= aligned ? starts[static_cast<std::size_t>(cell.column)] : 0;
+                    row.append(std::max(least, start > have ? start - have : 0), ' ');
                 }
-                joined += cell.text;
+                row += cell.text;
             }
-            lines_[i].cells.assign(1, {0, std::move(joined)});
+            rows.push_back(std::move(row));
         }
+        return rows;
     }
 
     // ---- output

@@ -143,11 +143,11 @@ TEST_CASE("neighbouring statements of one kind are laid out as a table [golden]"
                     "note\n\n\n\nstop: a->b\n  go_on  : long_name+a "
                     "-> a priority -1\n}") ==
           "net n {\n"
-          "  place a         \"first\" takes 2 s\n"
-          "  place long_name         takes 3 s  # note\n"
+          "  place a         \"first\"  takes 2 s\n"
+          "  place long_name          takes 3 s  # note\n"
           "\n"
           "  stop:  a             -> b\n"
-          "  go_on: long_name + a -> a priority -1\n"
+          "  go_on: long_name + a -> a  priority -1\n"
           "}\n");
     CHECK(
         formatted("cast {\nana: mannequin {height 1.75 m,at (-1.5,0,0) m}\nball : sphere {}\n}") ==
@@ -156,8 +156,15 @@ TEST_CASE("neighbouring statements of one kind are laid out as a table [golden]"
         "  ball: sphere    { }\n"
         "}\n");
     CHECK(formatted("rule a \"x\" never p\nrule long mutex (p,q)") ==
-          "rule a    \"x\" never p\n"
-          "rule long     mutex(p, q)\n");
+          "rule a    \"x\"  never p\n"
+          "rule long      mutex(p, q)\n");
+}
+
+TEST_CASE("a table that is too wide is aligned in its first columns [golden]") {
+    const std::string wide(60, 'w'), wider(100, 'w');
+    CHECK(formatted("t: " + wider + " -> a\nlong: a -> b" + wide) ==
+          "t:    " + wider + " -> a\nlong: a -> b" + wide + "\n");
+    CHECK(formatted("t: a -> after 2 s\nu: a -> bb") == "t: a ->  after 2 s\nu: a -> bb\n");
 }
 
 TEST_CASE("spacing of expressions has one form [golden]") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reference of the language says nothing that the parser does not: every example parses.
+// The reference of the language says nothing that the parser does not: every example parses and is in canonical form.
 #include "lang/language_doc.h"
 
 #include <doctest/doctest.h>
@@ -21,6 +21,9 @@ TEST_CASE("every example of docs/language.md parses [golden]") {
                        << format_diagnostic(d, result.file.line_text(d.where.line), false));
         }
         CHECK_MESSAGE(testing::broken_law(example.text) == "", example.text);
+        const Checked<std::string> canonical = format(example.text, "docs/language.md");
+        REQUIRE(canonical.has_value());
+        CHECK_MESSAGE(canonical.value() == example.text, "at line " << example.line << " of the page");
     }
 }
 
