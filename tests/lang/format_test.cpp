@@ -80,6 +80,18 @@ TEST_CASE("formatting twice is formatting once, and the tree stays [law]") {
     }
 }
 
+TEST_CASE("the project's own scenes are in canonical form [golden]") {
+    // `puppetri fmt FILE --write` brings them there.
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(PUP_SOURCE_DIR "/examples")) {
+        if (entry.path().extension() == ".pup") {
+            const std::string text = read(entry.path());
+            const bool canonical = formatted(text) == text;
+            CHECK_MESSAGE(canonical, entry.path().string());
+        }
+    }
+}
+
 TEST_CASE("comments survive wherever they stand [law]") {
     std::mt19937 random(7);
     for (const std::string& text : good_files()) {
