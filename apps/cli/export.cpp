@@ -69,7 +69,7 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
         }
     }
     if (arguments.given("--fps")) {
-        const auto rate = io::parse_frame_rate(arguments.text("--fps"));
+        const auto rate = parse_frame_rate(arguments.text("--fps"));
         if (rate) {
             plan.take.rate = *rate;
             plan.rate_given = true;
@@ -170,7 +170,7 @@ std::string described(const std::vector<io::Take>& takes) {
     } else {
         std::snprintf(text, sizeof text, "%zu %s, %lld frames at %s per second, %.2f s",
                       take.actors.size(), take.actors.size() == 1 ? "figure" : "figures",
-                      static_cast<long long>(take.frame_count), io::to_string(take.rate).c_str(),
+                      static_cast<long long>(take.frame_count), to_string(take.rate).c_str(),
                       take.times.back().seconds());
     }
     return text;

@@ -13,7 +13,7 @@
 #include "interrupt.h"
 #include "performing.h"
 #include "puppetri/io/atomic_file.h"
-#include "puppetri/io/frame_rate.h"
+#include "puppetri/base/frame_rate.h"
 #include "puppetri/render/film.h"
 #include "terminal.h"
 
@@ -89,7 +89,7 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
         }
     }
     if (arguments.given("--fps")) {
-        const auto rate = io::parse_frame_rate(arguments.text("--fps"));
+        const auto rate = parse_frame_rate(arguments.text("--fps"));
         if (rate) {
             plan.format.rate = {rate->numerator, rate->denominator};
             plan.rate_given = true;

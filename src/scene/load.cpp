@@ -203,18 +203,6 @@ Loaded load_all(FileSource& files, const std::string& path, bool also_unused) {
 
 }  // namespace
 
-std::optional<SimTime> FrameRate::time_of_frame(std::int64_t frame) const {
-    // frame * denominator * ticks / numerator; numerator and denominator are small, so 128 bits
-    // hold it.
-    const auto seconds =
-        multiply(Rational{frame}, make_rational(denominator, numerator).value_or(Rational{}));
-    if (!seconds) {
-        return std::nullopt;
-    }
-    const auto t = to_ticks(*seconds);
-    return t ? std::optional(t->time) : std::nullopt;
-}
-
 Checked<Scene> load(FileSource& files, const std::string& path) {
     Loaded loaded = load_all(files, path, false);
     if (!loaded.scene) {

@@ -10,13 +10,16 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/base/frame_rate.h"
 #include "puppetri/base/time.h"
 #include "puppetri/figure/mesh.h"
 #include "puppetri/figure/skeleton.h"
-#include "puppetri/io/frame_rate.h"
 #include "puppetri/stage/performance.h"
 
 namespace puppetri::io {
+
+inline constexpr double kLowestExportRate = 23.976;
+inline constexpr double kHighestExportRate = 120;
 
 // Where the travel of a figure goes.
 enum class RootMode : std::uint8_t {

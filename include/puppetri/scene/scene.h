@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/base/frame_rate.h"
 #include "puppetri/base/time.h"
 #include "puppetri/net/net.h"
 #include "puppetri/scene/file_source.h"
@@ -17,19 +18,7 @@
 
 namespace puppetri::scene {
 
-// Frames per second as an exact fraction: 24/1, 30000/1001.
-struct FrameRate {
-    std::int64_t numerator = 24;
-    std::int64_t denominator = 1;
-
-    // The instant of a frame (frame 0 is time 0), rounded to a tick where the rate does not divide
-    // a second of ticks. Gives   nullopt when it does not fit.
-    std::optional<SimTime> time_of_frame(std::int64_t frame) const;
-    double per_second() const {
-        return static_cast<double>(numerator) / static_cast<double>(denominator);
-    }
-    bool operator==(const FrameRate&) const = default;
-};
+using puppetri::FrameRate;  // base/frame_rate.h
 
 // `camera main { at (0, 1.6, 8) m, keeps ana and rui in view, moves with them }`
 struct Camera {

@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "puppetri/io/frame_rate.h"
+// With T ticks a second, frame k of the rate n/d is at k T d / n. To stay within 64 bits the
+// products are split: k d = q n + r gives q T + r T / n; an instant of s seconds and f ticks, s n =
+// q d + r, is frame q + (r T + f n) / (T d).
+#include "puppetri/base/frame_rate.h"
 
+#include <limits>
 #include <numeric>
 
 #include "puppetri/base/require.h"
 
-namespace puppetri::io {
+namespace puppetri {
 namespace {
 
-__extension__ typedef __int128 Wide;
-
-// a * b / c rounded towards minus infinity (or to the nearest) without overflow; c > 0.
-std::int64_t scaled(std::int64_t a, std::int64_t b, std::int64_t c, bool nearest) {
-    const Wide product = static_cast<Wide>(a) * b * (nearest ? 2 : 1) + (nearest ? c : 0);
-    const Wide divisor = static_cast<Wide>(c) * (nearest ? 2 : 1);
-    Wide quotient = product / divisor;
-    if (product % divisor < 0) {
-        --quotient;
-    }
-    return static_cast<std::int64_t>(quotient);
-}
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 
 // Digits with at most one point as a ratio; at most nine digits.
 std::optional<FrameRate> parse_decimal(std::string_view text) {
@@ -46,21 +39,50 @@ std::optional<FrameRate> parse_decimal(std::string_view text) {
 
 }  // namespace
 
+std::optional<SimTime> FrameRate::time_of_frame(std::int64_t frame) const {
+    if (frame < 0 || frame > kMost / denominator) {
+        return std::nullopt;
+    }
+    const std::int64_t seconds = frame * denominator / numerator;
+    const std::int64_t rest = frame * denominator % numerator;
+    if (seconds >= kMost / kTicksPerSecond) {
+        return std::nullopt;
+    }
+    std::int64_t ticks = seconds * kTicksPerSecond + rest * kTicksPerSecond / numerator;
+    const std::int64_t over = rest * kTicksPerSecond % numerator, under = numerator - over;
+    if (over > under || (over == under && ticks % 2 != 0)) {
+        ++ticks;
+    }
+    return SimTime{ticks};
+}
+
 SimTime FrameRate::time_of(std::int64_t frame) const {
-    return {scaled(frame, kTicksPerSecond * denominator, numerator, true)};
+    const std::optional<SimTime> at = time_of_frame(frame);
+    PUP_REQUIRE(at.has_value());
+    return *at;
 }
 
 std::int64_t FrameRate::frame_at_or_before(SimTime at) const {
-    std::int64_t frame = scaled(at.ticks, numerator, kTicksPerSecond * denominator, false);
-    // time_of rounds: the next frame may be shown at this very tick.
-    if (time_of(frame + 1) <= at) {
+    PUP_REQUIRE(at.ticks >= 0);
+    const std::int64_t whole = at.ticks / kTicksPerSecond, part = at.ticks % kTicksPerSecond;
+    PUP_REQUIRE(whole <= kMost / numerator);
+    const std::int64_t frames = whole * numerator / denominator;
+    const std::int64_t rest = whole * numerator % denominator;
+    std::int64_t frame =
+        frames + (rest * kTicksPerSecond + part * numerator) / (kTicksPerSecond * denominator);
+    // time_of_frame rounds: the next frame may be shown at this very tick, or this one after it.
+    if (const auto next = time_of_frame(frame + 1); next && *next <= at) {
         ++frame;
+    } else if (time_of(frame) > at) {
+        --frame;
     }
     return frame;
 }
 
 std::int64_t FrameRate::nearest_frame(SimTime at) const {
-    return scaled(at.ticks, numerator, kTicksPerSecond * denominator, true);
+    const std::int64_t before = frame_at_or_before(at);
+    const std::optional<SimTime> next = time_of_frame(before + 1);
+    return next && *next - at <= at - time_of(before) ? before + 1 : before;
 }
 
 std::optional<FrameRate> parse_frame_rate(std::string_view text) {
@@ -99,4 +121,4 @@ std::string to_string(FrameRate rate) {
     return rate.denominator == 1 ? above : above + "/" + std::to_string(rate.denominator);
 }
 
-}  // namespace puppetri::io
+}  // namespace puppetri
