@@ -188,9 +188,11 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
     if (now.planted) {
         landing.print = footprint_of(figure, side, now);
         landing.path.stand(0, landing.print);
-        if (std::fabs(now.pitch.position) > 1e-9 || std::fabs(now.pitch.velocity) > 1e-9) {
-            landing.flat_s = kRollFlat_s;
-            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {kRollFlat_s, {}}));
+        // A foot that is nearly flat gets there sooner.
+        const double tilt = std::fabs(now.pitch.position) + 0.05 * std::fabs(now.pitch.velocity);
+        if (tilt > 1e-9) {
+            landing.flat_s = clamp(kRollFlat_s * std::sqrt(tilt / 0.15), 0.03, kRollFlat_s);
+            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {landing.flat_s, {}}));
         }
         return landing;
     }

@@ -86,7 +86,7 @@ class Throw final : public Movement {
         const double end = r + 0.7, back = 0.85 / r;  // speeds scale with a fitted duration
         accent_.lift_m = Curve1({{0, {}},
                                  {low_s_, {-0.05 * h, 0, 0}},
-                                 {r, {-0.006 * h, 0.15 * h * back, 0}},
+                                 {r, {-0.012 * h, 0.08 * h * back, 0}},
                                  {end, {}}});
         accent_.ahead_m = Curve1({{0, {}},
                                   {low_s_, {-0.030 * h, 0, 0}},

@@ -22,7 +22,7 @@
 namespace puppetri::motion {
 namespace {
 
-constexpr double kNoStep = radians(3), kPairMost = radians(100);
+constexpr double kNoStep = radians(3), kPairMost = radians(112);
 constexpr double kAside = 0.040;  // of the height, at 90 degrees
 constexpr double kClearance_m = 0.028;
 constexpr double kGround_s = 0.012;  // both feet stand this long between two steps
@@ -216,7 +216,10 @@ class Turn final : public Movement {
                                          leg.ankle_world.y - hip.y +
                                              std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01)));
             }
-            band.lowest = band.highest - 0.012 * figure_.height_m;
+            // A figure that starts with bent knees takes the whole turn to stand up.
+            const double lowest = band.highest - 0.012 * figure_.height_m;
+            band.lowest =
+                std::fmin(lowest, lerp(p.y - 0.01 * figure_.height_m, lowest, smooth_rise(t, T_)));
             height.bands.push_back(band);
         }
         pelvis_.y = plan_height(height);

@@ -16,6 +16,7 @@
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/library.h"
+#include "puppetri/motion/turn.h"
 #include "take.h"
 #include "take_performance.h"
 
@@ -326,6 +327,7 @@ struct Stage::Data {
 
     SimTime begin_actor(std::uint32_t number, const motion::BoundCall& call, SimTime duration);
     SimTime begin_flight(std::uint32_t number, const motion::BoundCall& call, SimTime duration);
+    void attend(ActorIndex thrower, const motion::BoundCall& call);
     void receive(ActorIndex catcher, const motion::Flight& flight);
     bool planted(ActorIndex actor) const;
 };
@@ -374,6 +376,7 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
     Activity& activity = activities[number];
     activity.actor = call.subject.actor;
     PUP_REQUIRE(activity.actor.value < take.actors.size());
+    attend(activity.actor, call);
     const MotionContext context = context_of(activity.actor, now, duration);
     const Seen seen = look_around(now);
     const motion::Surroundings around{seen.actors, seen.props, seen.sets, activity.actor,
@@ -502,6 +505,37 @@ SimTime Stage::Data::begin_flight(std::uint32_t number, const motion::BoundCall&
     }
     take.score[activity.row].prop = play.cast.props[prop.value].name;
     return duration.ticks >= 0 ? duration : flight.duration;
+}
+
+// Who waits for a ball turns to its holder as soon as that one turns to it or begins to throw:
+// since it got ready, the other may have walked on.
+void Stage::Data::attend(ActorIndex thrower, const motion::BoundCall& call) {
+    constexpr double kNearEnough_rad = 0.07;
+    constexpr SimTime kTakes{kTicksPerSecond / 2};
+    const motion::ArgumentValue* to = call.find(call.movement == "throw" ? "to" : "toward");
+    const ActorIndex* catcher = to != nullptr ? std::get_if<ActorIndex>(to) : nullptr;
+    if (catcher == nullptr || *catcher == thrower || !planted(*catcher)) {
+        return;
+    }
+    Waiting& wait = waiting[catcher->value];
+    if (!wait.prop.valid() || held_by(thrower, now) != wait.prop) {
+        return;
+    }
+    const MotionContext context = context_of(*catcher, now, kTakes);
+    Controls other;
+    take.actors[thrower.value].timeline.sample(now, other, true);
+    const double heading = motion::heading_to(context.now, other.pelvis.position_world);
+    const double faces =
+        heading_of(motion::pelvis_over_feet(context.figure, context.now).rotation_world);
+    if (std::fabs(turn_between(faces, heading)) < kNearEnough_rad) {
+        return;
+    }
+    motion::Ready ready =
+        motion::make_ready(context, {.radius_m = take.radius(wait.prop), .heading_rad = heading});
+    wait.at_world = ready.catches_at_world;
+    const std::uint32_t owner =
+        take.actors[catcher->value].timeline.in_charge(Limb::kLeftArm, now).owner;
+    take_limbs(*catcher, motion::kAllLimbs, std::move(ready.movement), owner);
 }
 
 // The hands of whoever waits go to where the ball will be, whatever movement it waits in, if it
