@@ -94,6 +94,9 @@ bool Take::gaze_target(ActorIndex actor, SimTime at, Vec3& target_world) const {
             break;
     }
     const Hold& hold = props[gaze.prop.value].at(at);
+    if (hold.kind == Holding::kHands && hold.actor == actor) {
+        return false;  // nobody stares at what it has in its own hands
+    }
     if (hold.kind == Holding::kHands) {
         const ActorTake& holder = actors[hold.actor.value];
         motion::Controls controls;

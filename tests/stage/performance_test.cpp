@@ -1,25 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A finished performance answers in any order, from any thread, without allocating.
 #include <atomic>
-#include <cstdlib>
-#include <new>
 #include <thread>
 
 #include "doctest/doctest.h"
 #include "exchange.h"
-
-namespace {
-std::atomic<long> g_allocations{0};
-}
-void* operator new(std::size_t size) {
-    ++g_allocations;
-    if (void* p = std::malloc(size)) {
-        return p;
-    }
-    std::abort();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#include "support/count_allocations.h"
 
 using namespace puppetri;
 using namespace puppetri::test;
@@ -90,13 +76,13 @@ TEST_CASE("after the first pose nothing is allocated [alloc]") {
     figure::Pose pose;
     p.pose({0}, {}, pose);
     Transform ball = p.world_from_prop({0}, {});
-    const long before = g_allocations;
+    const std::uint64_t before = allocations();
     for (SimTime t; t < p.duration(); t = t + ms(20)) {
         p.pose({0}, t, pose);
         p.pose({1}, t, pose);
         ball = p.world_from_prop({0}, t);
     }
-    CHECK(g_allocations == before);
+    CHECK(allocations() == before);
     CHECK(ball.translation.y > 0);
 }
 
