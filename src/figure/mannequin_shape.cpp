@@ -175,7 +175,7 @@ ImplicitShape mannequin_shape(const Landmarks& m) {
         add.blob(skull + mirrored(Vec3{0.029, -0.014, 0.074}, s), {0.013, 0.011, 0.012});  // lids
         add.level = 1;
         add.blend = 0.013;
-        add.blob(skull + mirrored(Vec3{0.079, -0.028, -0.010}, s), {0.012, 0.026, 0.019}, 0.15);  // ears
+        add.blob(skull + mirrored(Vec3{0.079, -0.031, -0.010}, s), {0.012, 0.026, 0.019}, 0.15);  // ears
     }
 
     // Arms.
@@ -258,8 +258,8 @@ double border(const Landmarks& m, int which, Vec3 p) {
     switch (which) {
         case 0: {  // hair: above a line that falls from the forehead over the ears to the nape
             const double z = (p.z - skull.z), y = (p.y - skull.y);
-            const double front = std::clamp((z - 0.030) / 0.05, 0.0, 1.0), back = std::clamp((-0.01 - z) / 0.06, 0.0, 1.0);
-            return (0.016 + 0.036 * front * front * (3 - 2 * front) - 0.080 * back * back * (3 - 2 * back) - y);
+            const double front = std::clamp((z - 0.030) / 0.05, 0.0, 1.0), back = std::clamp((-0.030 - z) / 0.050, 0.0, 1.0);
+            return (0.013 + 0.039 * front * front * (3 - 2 * front) - 0.080 * back * back * (3 - 2 * back) - y);
         }
         case 1: {  // eyes: two upright ovals
             const double x = (std::fabs(p.x) - 0.029) / 0.0068, y = (p.y - skull.y + 0.014) / 0.0088;
@@ -306,7 +306,7 @@ double relief(const Landmarks& m, Vec3 p) {
         return t * t * (3 - 2 * t);
     };
     if (p.y > 1.55) {
-        return std::fabs(p.x) < 0.15 ? 0.007 * edge(0, -1) : 0;
+        return std::fabs(p.x) < 0.15 ? 0.005 * edge(0, -1) : 0;
     }
     double shirt = edge(3, 1) * edge(5, 1);
     if (std::fabs(p.x) < 0.2 && p.y > m.upper_chest.y) {

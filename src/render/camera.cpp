@@ -103,12 +103,20 @@ scene::Camera default_camera(const stage::Performance& performance) {
         tallest = std::max(tallest, actors[a].skeleton->height_m);
         camera.keeps.push_back({a});
     }
-    const Vec3 middle = (low + high) * 0.5;
-    const double away = std::max(2.6 * tallest, 1.3 * std::max(high.x - low.x, high.z - low.z) + tallest);
-    performance.pose({0}, {}, pose);
-    const Vec3 ahead = rotate(pose.parent_from_joint[0].rotation, {0, 0, 1});
-    const Vec3 beside = rotate(pose.parent_from_joint[0].rotation, {1, 0, 0});
-    camera.at_world = middle + normalized(ahead * 0.75 + beside * 0.66) * away + Vec3{0, 0.85 * tallest, 0};
+    const Vec3 middle = (low + high) * 0.5, spread = high - low;
+    const double away = std::max(2.6 * tallest, 1.3 * std::max(spread.x, spread.z) + tallest);
+    Vec3 ahead;
+    for (std::uint32_t a = 0; a < actors.size(); ++a) {
+        performance.pose({a}, {}, pose);
+        ahead = ahead + rotate(pose.parent_from_joint[0].rotation, {0, 0, 1}) * (1.0 / static_cast<double>(actors.size()));
+    }
+    Vec3 side;
+    if (length(ahead) > 0.5) {  // they look one way: before them, a little aside
+        side = normalized(ahead) * 0.8 + normalized(Vec3{ahead.z, 0, -ahead.x}) * 0.6;
+    } else {  // they look at each other: across the line between them
+        side = spread.x >= spread.z ? Vec3{0.2, 0, 1} : Vec3{1, 0, 0.2};
+    }
+    camera.at_world = middle + normalized(side) * away + Vec3{0, 0.85 * tallest, 0};
     camera.moves_with_them = true;
     return camera;
 }

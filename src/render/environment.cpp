@@ -11,7 +11,7 @@ constexpr float kPi_f = 3.14159265f;
 constexpr Float3 kZenith{0.07f, 0.21f, 0.52f}, kMiddle{0.20f, 0.45f, 0.86f}, kHorizon{0.70f, 0.87f, 1.0f};
 constexpr Float3 kWarm{1.0f, 0.80f, 0.58f};
 constexpr Float3 kFarHill{0.44f, 0.60f, 0.74f}, kNearHill{0.30f, 0.45f, 0.42f}, kMeadowHaze{0.46f, 0.58f, 0.52f};
-constexpr Float3 kFloorHaze{0.74f, 0.79f, 0.82f};
+constexpr Float3 kFloorHaze{0.96f, 1.02f, 1.08f};
 
 // atan2 to 0.0002 rad, enough to look up hills.
 float azimuth(float x, float z) {
@@ -25,8 +25,8 @@ float azimuth(float x, float z) {
 
 }  // namespace
 
-Environment::Environment(const Look& look, std::span<const stage::Set> sets)
-    : to_sun_(normalized(float3(look.to_sun_world))),
+Environment::Environment(Vec3 to_sun_world, std::span<const stage::Set> sets)
+    : to_sun_(normalized(float3(to_sun_world))),
       road_(!sets.empty() && sets.front().kind == stage::SetKind::kRoad),
       ground_(road_, sets.empty() ? 0.0f : static_cast<float>(sets.front().width_m)) {
     if (!sets.empty()) {

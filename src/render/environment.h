@@ -13,7 +13,7 @@ namespace puppetri::render {
 
 class Environment {
    public:
-    Environment(const Look& look, std::span<const stage::Set> sets);
+    Environment(Vec3 to_sun_world, std::span<const stage::Set> sets);
 
     Float3 to_sun() const { return to_sun_; }
     Float3 sun() const { return {3.35f, 3.0f, 2.5f}; }  // light that a white surface facing it sends back

@@ -135,9 +135,9 @@ PUP_CLONES void floor_colours(const GrainTile& fine, const GrainTile& coarse, co
         const float thin = most(covered_periodic(1, 0.012f, x + 0.006f, wx), covered_periodic(1, 0.012f, z + 0.006f, wz));
         const float thick = most(covered_periodic(5, 0.03f, x + 0.015f, wx), covered_periodic(5, 0.03f, z + 0.015f, wz));
         const float line = least(1.0f, 0.35f * thin + 0.4f * thick);
-        out.r[i] = 0.40f * tone * (1 - line) + 0.20f * line;
-        out.g[i] = 0.375f * tone * (1 - line) + 0.21f * line;
-        out.b[i] = 0.34f * tone * (1 - line) + 0.23f * line;
+        out.r[i] = 0.36f * tone * (1 - line) + 0.17f * line;
+        out.g[i] = 0.345f * tone * (1 - line) + 0.19f * line;
+        out.b[i] = 0.315f * tone * (1 - line) + 0.22f * line;
     }
 }
 

@@ -49,8 +49,19 @@ struct Sample {
 
 }  // namespace
 
+namespace {
+
+// Over the photographer's left shoulder, so that faces are lit and shadows fall aside and back.
+Vec3 sun_over_the_shoulder(const View& view) {
+    const Vec3 back = rotate(view.world_from_camera.rotation, {0, 0, 1}), left = rotate(view.world_from_camera.rotation, {-1, 0, 0});
+    const Vec3 level = normalized(Vec3{back.x, 0, back.z}, {0, 0, 1}) * 0.61 + normalized(Vec3{left.x, 0, left.z}, {-1, 0, 0}) * 0.79;
+    return normalized(level) * 0.68 + Vec3{0, 0.74, 0};
+}
+
+}  // namespace
+
 struct PictureMaker::Data {
-    Data(const RenderScene& s, int w, int h) : scene(s), width(w), height(h), environment(s.look, s.sets) {}
+    Data(const RenderScene& s, int w, int h) : scene(s), width(w), height(h), environment(s.look.to_sun_world.value_or(sun_over_the_shoulder(s.camera->view({}))), s.sets) {}
 
     RenderScene scene;
     int width, height, tiles_x = 0, tiles_y = 0;

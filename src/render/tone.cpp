@@ -6,7 +6,7 @@
 namespace puppetri::render {
 
 Tone::Tone() {
-    constexpr float kExposure = 0.62f;
+    constexpr float kExposure = 0.53f;
     for (int i = 0; i < kSteps + 2; ++i) {
         const float root = static_cast<float>(i) / kScale;
         const float x = root * root * kExposure;

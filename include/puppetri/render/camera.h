@@ -17,7 +17,8 @@ struct View {
     double fov_rad = 0.61;  // vertical
 };
 
-// A camera for a scene that has none: before and beside the first actor, keeps all in view and moves with them.
+// A camera for a scene that has none: before the actors and a little aside, or, when they look at each other, across the
+// line between them. It keeps all in view and moves with them.
 scene::Camera default_camera(const stage::Performance& performance);
 
 class CameraPath {

@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ struct Picture {
 };
 
 struct Look {
-    Vec3 to_sun_world{-0.55, 0.78, 0.42};  // any length above 0, y > 0
+    // Any length above 0, y > 0. None: over the left shoulder of the camera as it stands at time 0.
+    std::optional<Vec3> to_sun_world;
     int edge_samples = 5;                  // more primary rays per pixel where the first ones disagree; 0 turns it off
     bool dither = true;                    // half a step of noise against bands in the sky; off for .gif and .apng
 };
