@@ -237,6 +237,7 @@ class Parser {
         }
         if (!good) {
             complain(Entry::kStatement, tokens_, begin, end, reading_, element, report_);
+            complain_on(begin, end, element);
             if (brace) {
                 recover(out, which, level, end, element);
             }
@@ -254,6 +255,65 @@ class Parser {
             error(at_, "syntax", element, "no block can follow this statement",
                   "remove the braces, or the statement before");
             skip_block();
+        }
+    }
+
+    // A word that can begin a clause of a place or of a transition, or a slip of one.
+    bool begins_clause(const Token& token, bool also_misspelt) const {
+        static const std::vector<std::string> words = {
+            "does",   "runs",     "takes", "tokens", "holds", "keeps",  "discipline", "of",
+            "is",     "priority", "when",  "with",   "while", "unless", "on",         "after",
+            "memory", "servers",  "for",   "set",    "odds",  "raises", "together"};
+        if (!is_word(token.kind)) {
+            return false;
+        }
+        const std::string_view word =
+            std::string_view(file_.text).substr(token.begin, token.end - token.begin);
+        if (std::find(words.begin(), words.end(), word) != words.end()) {
+            return true;
+        }
+        return also_misspelt && token.kind == Kind::kWord && word.size() >= 4 &&
+               !nearest_name(word, words).empty();
+    }
+
+    // The grammar has stopped at a word that begins no clause of this place or transition. Leaves
+    // that clause out and reads on, so that the defects behind it are told too.
+    void complain_on(std::uint32_t begin, std::uint32_t end, const std::string& element) {
+        std::vector<Token> rest(tokens_.begin() + begin,
+                                tokens_.begin() + end + 1);  // with what ends it
+        std::uint32_t stuck = reading_.furthest - begin;
+        const bool labelled =
+            rest.size() > 2 && (rest[1].kind == Kind::kColon || rest[2].kind == Kind::kColon);
+        if (rest[0].kind != Kind::kPlace && rest[0].kind != Kind::kPublic && !labelled) {
+            return;
+        }
+        while (!report_.full() && stuck > 1 && stuck + 1 < rest.size() &&
+               rest[stuck].kind == Kind::kWord) {
+            int open = 0;
+            std::uint32_t next = stuck + 1;
+            for (; next + 1 < rest.size(); ++next) {
+                const Kind k = rest[next].kind;
+                open += k == Kind::kOpenParen || k == Kind::kOpenList ? 1 : 0;
+                open -= k == Kind::kCloseParen || k == Kind::kCloseList ? 1 : 0;
+                if (open == 0 && begins_clause(rest[next], next > stuck + 1)) {
+                    break;
+                }
+            }
+            if (next + 1 >= rest.size()) {
+                return;
+            }
+            rest.erase(rest.begin() + stuck, rest.begin() + next);
+            std::vector<char> kinds;
+            for (const Token& token : rest) {
+                kinds.push_back(static_cast<char>(token.kind));
+            }
+            const auto size = static_cast<std::uint32_t>(rest.size() - 1);
+            if (read_statement(Entry::kStatement, rest, kinds, 0, size, reading_) ||
+                reading_.furthest < stuck) {
+                return;
+            }
+            complain(Entry::kStatement, rest, 0, size, reading_, element, report_);
+            stuck = reading_.furthest;
         }
     }
 

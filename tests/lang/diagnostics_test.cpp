@@ -104,6 +104,15 @@ TEST_CASE("a defect in one statement does not spoil the others [unit]") {
     CHECK(result.file.body.places.size() == 3);
 }
 
+TEST_CASE("all slips of one statement are told [unit]") {
+    CHECK(defects("place a taks 3 s tokns 1 holds at mst 3") ==
+          "1:9+4 unknown-keyword\n1:18+5 unknown-keyword\n1:35+3 unknown-keyword\n");
+    CHECK(defects("t: a -> b wen x and y > 2 priorty 2 odds 1") ==
+          "1:11+3 unknown-keyword\n1:27+7 unknown-keyword\n");
+    CHECK(defects("t: a -> b wen f(with, x) odds 1") == "1:11+3 unknown-keyword\n");
+    CHECK(defects("t: a -> b wen x memory age") == "1:11+3 unknown-keyword\n");
+}
+
 TEST_CASE("a forgotten bracket or brace is found where it was forgotten [unit]") {
     CHECK(defects("net a {\n  place b\nnet c {\n  place d\n}\n") == "3:1+3 unclosed-block\n");
     CHECK(defects("use a(b, c\nplace d\nplace e taks 2\n") ==
