@@ -7,6 +7,22 @@
 
 namespace puppetri::lang {
 
+namespace {
+
+std::string_view line_of(const File& file, std::uint32_t line) {
+    if (line == 0 || line > file.line_starts.size()) {
+        return {};
+    }
+    const std::size_t begin = file.line_starts[line - 1];
+    std::size_t end = line < file.line_starts.size() ? file.line_starts[line] : file.text.size();
+    while (end > begin && (file.text[end - 1] == '\n' || file.text[end - 1] == '\r')) {
+        --end;
+    }
+    return std::string_view(file.text).substr(begin, end - begin);
+}
+
+}  // namespace
+
 SourceSpan File::where(Span span) const {
     SourceSpan out;
     out.file = filename;
@@ -19,7 +35,7 @@ SourceSpan File::where(Span span) const {
     const std::uint32_t start = line_starts[out.line - 1];
     const std::uint32_t end = std::max(
         begin, std::min<std::uint32_t>(
-                   span.end, start + static_cast<std::uint32_t>(line_text(out.line).size())));
+                   span.end, start + static_cast<std::uint32_t>(line_of(*this, out.line).size())));
     const std::string_view all = text;
     out.column = 1 + count_code_points(all.substr(start, begin - start));
     out.length = std::max<std::uint32_t>(1, count_code_points(all.substr(begin, end - begin)));
@@ -27,15 +43,14 @@ SourceSpan File::where(Span span) const {
 }
 
 std::string File::line_text(std::uint32_t line) const {
-    if (line == 0 || line > line_starts.size()) {
-        return {};
+    std::string out(line_of(*this, line));
+    std::size_t from = 0;
+    while (const std::optional<std::size_t> bad =
+               find_invalid_utf8(std::string_view(out).substr(from))) {
+        out[from + *bad] = '?';
+        from += *bad + 1;
     }
-    const std::size_t begin = line_starts[line - 1];
-    std::size_t end = line < line_starts.size() ? line_starts[line] : text.size();
-    while (end > begin && (text[end - 1] == '\n' || text[end - 1] == '\r')) {
-        --end;
-    }
-    return text.substr(begin, end - begin);
+    return out;
 }
 
 namespace {

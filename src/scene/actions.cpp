@@ -4,7 +4,8 @@
 #include <algorithm>
 
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/signature.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 
@@ -150,46 +151,23 @@ void Elaboration::check_stand_in_call(const lang::Expr& call, const Scope& scope
 
 void Elaboration::bind_arguments(const lang::Expr& call, const MovementSignature& signature,
                                  const Scope& scope, motion::BoundCall& out) {
-    const std::string movement(signature.name);
-    std::vector<std::string> known;
+    lang::Signature wanted{.name = std::string(signature.name), .parameters = {}};
     for (const motion::Parameter& p : signature.parameters) {
-        known.emplace_back(p.name);
+        wanted.parameters.push_back({.name = std::string(p.name),
+                                     .required = p.default_text.empty() && !p.optional,
+                                     .wanted = wanted_types(p.types)});
     }
-    std::vector<bool> given(known.size(), false);
-    std::size_t position = 0;
-    for (const lang::Argument& a : call.args) {
-        std::size_t i = 0;
-        if (a.name.text.empty()) {
-            i = position++;
-            if (i >= known.size()) {
-                error("too-many-arguments", a.value.span,
-                      movement + " takes " + std::to_string(known.size()) + " arguments",
-                      "remove this one");
-                continue;
-            }
-        } else {
-            i = static_cast<std::size_t>(std::find(known.begin(), known.end(), a.name.text) -
-                                         known.begin());
-            if (i == known.size()) {
-                unknown(a.name.span, "argument of " + movement, a.name.text, known);
-                continue;
-            }
-        }
-        if (given[i]) {
-            error("repeated-argument", a.value.span, known[i] + " is given twice", "remove one");
+    const lang::MatchedArguments matched = lang::match_arguments(wanted, call.args, call.span);
+    for (const lang::CallDefect& d : matched.defects) {
+        error(d.code, d.where, d.message, d.remedy);
+    }
+    for (std::size_t k = 0; k < call.args.size(); ++k) {
+        const std::uint32_t i = matched.parameter_of[k];
+        if (i == lang::MatchedArguments::kNone) {
             continue;
         }
-        given[i] = true;
-        if (auto value = bind_argument(a.value, signature.parameters[i], scope, out)) {
-            out.arguments.push_back({known[i], std::move(*value)});
-        }
-    }
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        const motion::Parameter& p = signature.parameters[i];
-        if (!given[i] && p.default_text.empty() && !p.optional) {
-            error("missing-argument", call.span,
-                  movement + " needs " + wanted_types(p.types) + ": " + known[i],
-                  "write " + known[i] + ": ... (" + std::string(p.doc) + ")");
+        if (auto value = bind_argument(call.args[k].value, signature.parameters[i], scope, out)) {
+            out.arguments.push_back({wanted.parameters[i].name, std::move(*value)});
         }
     }
 }

@@ -2,7 +2,8 @@
 // How long: constants, expressions, intervals and distributions, of places (`takes`) and of
 // transitions (`after`, `for`).
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/signature.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 namespace {
@@ -95,48 +96,21 @@ net::DurationDraft Elaboration::distribution_of(const lang::Expr& e, const Scope
     if (d.kind == DistributionKind::kEmpirical || d.kind == DistributionKind::kDiscrete) {
         return sample_distribution(e, scope, std::move(out));
     }
-    std::vector<const lang::Expr*> given(4, nullptr);
-    std::size_t position = 0;
-    for (const lang::Argument& a : e.args) {
-        std::size_t i = 0;
-        if (a.name.text.empty()) {
-            i = position++;
-        } else {
-            while (i < 4 && d.parameters[i] != nullptr && a.name.text != d.parameters[i]) {
-                ++i;
-            }
-        }
-        if (i >= 4 || d.parameters[i] == nullptr) {
-            std::vector<std::string> known;
-            for (const char* p : d.parameters) {
-                if (p != nullptr) {
-                    known.emplace_back(p);
-                }
-            }
-            if (a.name.text.empty()) {
-                error("too-many-arguments", a.value.span,
-                      std::string(d.name) + " takes " + std::to_string(known.size()) + " arguments",
-                      "remove this one");
-            } else {
-                unknown(a.name.span, std::string("parameter of ") + d.name, a.name.text, known);
-            }
-            continue;
-        }
-        if (given[i] != nullptr) {
-            error("repeated-argument", a.value.span,
-                  std::string(d.parameters[i]) + " is given twice", "remove one");
-        }
-        given[i] = &a.value;
-    }
+    lang::Signature wanted{.name = d.name, .parameters = {}};
     for (int i = 0; i < 4 && d.parameters[i] != nullptr; ++i) {
-        if (given[i] == nullptr) {
-            if (i < d.required) {
-                error("missing-argument", e.span,
-                      std::string(d.name) + " needs its " + d.parameters[i],
-                      std::string("write ") + d.parameters[i] + ": ...");
-                return {.where = out.where};
-            }
-            if (i == 3 && given[2] != nullptr) {
+        wanted.parameters.push_back(
+            {.name = d.parameters[i], .required = i < d.required, .wanted = {}});
+    }
+    const lang::MatchedArguments matched = lang::match_arguments(wanted, e.args, e.span);
+    for (const lang::CallDefect& defect : matched.defects) {
+        error(defect.code, defect.where, defect.message, defect.remedy);
+    }
+    if (!matched.defects.empty()) {
+        return {.where = out.where};
+    }
+    for (std::size_t i = 0; i < matched.values.size(); ++i) {
+        if (matched.values[i] == nullptr) {
+            if (i == 3 && matched.values[2] != nullptr) {
                 error("missing-argument", e.span,
                       std::string(d.name) + " with a low end needs its high", "write high: ...");
                 return {.where = out.where};
@@ -147,7 +121,7 @@ net::DurationDraft Elaboration::distribution_of(const lang::Expr& e, const Scope
         const ValueType type = !shape                                ? kTime
                                : d.kind == DistributionKind::kErlang ? ValueType{ValueKind::kInt}
                                                                      : ValueType{ValueKind::kReal};
-        auto value = expr_of(*given[static_cast<std::size_t>(i)], scope, type);
+        auto value = expr_of(*matched.values[i], scope, type);
         if (!value) {
             return {.where = out.where};
         }

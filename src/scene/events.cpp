@@ -3,7 +3,7 @@
 
 #include "puppetri/base/rational.h"
 #include "puppetri/base/text.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/signature.h"
 #include "puppetri/lang/units.h"
 
 namespace puppetri::scene {

@@ -2,7 +2,7 @@
 // Expressions: constants are folded exactly; what depends on data, counts or variables becomes an
 // expression of the kernel; what speaks of places, firings and figures becomes a formula.
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 namespace {

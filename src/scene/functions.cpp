@@ -5,7 +5,7 @@
 
 #include "elaboration.h"
 #include "puppetri/base/elementary.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 

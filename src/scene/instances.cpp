@@ -3,7 +3,8 @@
 // statement gets its full path and its entry in the draft. Statements are completed later, when all
 // names are known.
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/signature.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 namespace {
@@ -148,56 +149,20 @@ std::uint32_t Elaboration::make_instance(const Declaration& net, std::string pat
 void Elaboration::match_arguments(Instance& instance,
                                   const std::vector<lang::Argument>& arguments) {
     const std::vector<lang::Parameter>& parameters = instance.net->parameters;
-    instance.arguments.assign(parameters.size(), nullptr);
     instance.values.assign(parameters.size(), {Instance::Bound::kNo, Nothing{}});
-    const std::string net = "net " + instance.net->name.text;
-    std::vector<bool> told(parameters.size(), false);
-    std::size_t position = 0;
-    bool named = false;
-    for (const lang::Argument& a : arguments) {
-        std::size_t i = 0;
-        if (a.name.text.empty()) {
-            if (named) {
-                error("argument-order", a.value.span, "an argument by position after one by name",
-                      "name it too: `NAME: value`");
-                continue;
-            }
-            i = position++;
-            if (i >= parameters.size()) {
-                error("too-many-arguments", a.value.span,
-                      net + " takes " + std::to_string(parameters.size()) + " arguments",
-                      "remove this one");
-                continue;
-            }
-        } else {
-            named = true;
-            std::vector<std::string> known;
-            for (const lang::Parameter& p : parameters) {
-                known.push_back(p.name.text);
-            }
-            while (i < parameters.size() && parameters[i].name.text != a.name.text) {
-                ++i;
-            }
-            if (i == parameters.size()) {
-                unknown(a.name.span, "parameter of " + net, a.name.text, known);
-                continue;
-            }
-        }
-        if (instance.arguments[i] != nullptr) {
-            error("repeated-argument", a.value.span, parameters[i].name.text + " is given twice",
-                  "remove one");
-            continue;
-        }
-        instance.arguments[i] = &a.value;
+    lang::Signature wanted{.name = "net " + instance.net->name.text, .parameters = {}};
+    for (const lang::Parameter& p : parameters) {
+        // A net that is tried alone has stand-ins for its parameters.
+        const bool required = !p.default_value && !instance.stand_in;
+        wanted.parameters.push_back({.name = p.name.text, .required = required, .wanted = {}});
     }
-    if (instance.stand_in) {
-        return;
+    lang::MatchedArguments matched = lang::match_arguments(wanted, arguments, instance.where);
+    for (const lang::CallDefect& d : matched.defects) {
+        error(d.code, d.where, d.message, d.remedy);
     }
+    instance.arguments = std::move(matched.values);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-        if (instance.arguments[i] == nullptr && !parameters[i].default_value) {
-            error("missing-argument", instance.where,
-                  net + " needs an argument " + parameters[i].name.text,
-                  "give it: `" + parameters[i].name.text + ": ...`");
+        if (instance.arguments[i] == nullptr && wanted.parameters[i].required) {
             instance.values[i].first = Instance::Bound::kYes;  // Nothing
         }
     }

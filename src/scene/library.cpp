@@ -2,7 +2,8 @@
 #include "library.h"
 
 #include "puppetri/lang/parse.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/signature.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 namespace {

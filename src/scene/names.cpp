@@ -3,7 +3,7 @@
 // outwards (loop variables, variables of the statement, parameters, members of the net, types and
 // cast of the file); each further step is asked of what the steps before it stand for.
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 namespace {

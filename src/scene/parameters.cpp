@@ -2,7 +2,7 @@
 // Parameters of nets: their types, and their values, bound when somebody first asks. So instances
 // may name each other in any order, and a ring of defaults is found instead of followed.
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 namespace {

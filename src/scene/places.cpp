@@ -2,7 +2,7 @@
 // Places: durations, disciplines, tokens, the movement they do, the net they run, the place they
 // are.
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 

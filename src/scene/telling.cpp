@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Telling defects: each once, however many instances of a net show it.
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/signature.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Transitions: arcs with their patterns and variables, clauses, and rendezvous.
 #include "elaboration.h"
-#include "puppetri/lang/types.h"
+#include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
 namespace {

@@ -177,3 +177,13 @@ TEST_CASE("a diagnostic reads like this [golden]") {
           "       |                               ^\n"
           "  help: write face(...)\n");
 }
+
+TEST_CASE("what is shown of a line is text that a terminal can show [hostile]") {
+    const Parsed result = parse("place a\nplace \xFF\xFE \x1B[31m b\n", "t.pup");
+    CHECK(result.file.line_text(2) ==
+          "place ?? \x1B[31m b");  // format_diagnostic takes out what a terminal would act on
+    CHECK(format_diagnostic(result.diagnostics[0], result.file.line_text(2), false).find('\x1B') ==
+          std::string::npos);
+    CHECK(result.file.line_text(0).empty());
+    CHECK(result.file.line_text(9).empty());
+}

@@ -320,7 +320,8 @@ struct File {
     // Line, column and length for people, all in code points; a span over several lines ends with
     // its first. Cost: log n.
     SourceSpan where(Span span) const;
-    // The line's text without its end, for format_diagnostic. Empty for lines that are not there.
+    // The line's text without its end, for format_diagnostic; `?` for bytes that are no UTF-8.
+    // Empty for lines that are not there.
     std::string line_text(std::uint32_t line) const;
 };
 
