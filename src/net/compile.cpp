@@ -88,7 +88,7 @@ class Compiler {
 
     void classify_places() {
         const std::size_t count = net_.places.size();
-        out_.place.assign(count, PlaceRow{});
+        out_.place.assign(count + 1, PlaceRow{});
         const auto raise = [&](std::uint32_t p, PlaceKind kind) {
             out_.place[p].kind = std::max(out_.place[p].kind, kind);
         };
@@ -287,7 +287,6 @@ class Compiler {
         for (const auto& [p, w] : gives) {
             out_.arcs.push_back({p, w});
         }
-        row.end = static_cast<std::uint32_t>(out_.arcs.size());
         const bool conditional = watch(t, demands);
         if (!conditional) {
             out_.unconditional.push_back(t);
@@ -373,7 +372,6 @@ class Compiler {
             row.special = static_cast<std::uint32_t>(out_.specials.size());
             out_.specials.push_back(std::move(special));
         }
-        row.path_hash = hash_text(draft.path);
         out_.transition.push_back(row);
         priorities_.push_back(draft.priority);
     }
@@ -524,8 +522,8 @@ class Compiler {
         return any;
     }
 
-    // How often a multi-server transition is enabled: the least of tokens / weight over its inputs, ready ones or,
-    // for `now`, all.
+    // How often a multi-server transition is enabled: the least of tokens / weight over its inputs,
+    // ready ones or, for `now`, all.
     static void layout_degree(const std::map<std::uint32_t, Demand>& demands, Special& special) {
         for (const auto& [p, d] : demands) {
             if (d.take > 0) {
@@ -596,12 +594,15 @@ class Compiler {
             for (const Watcher& w : total.row(p)) {
                 out_.watchers.push_back(with_gate(w));
             }
-            row.end = static_cast<std::uint32_t>(out_.watchers.size());
             if (row.ready != row.total) {
                 row.first = out_.watchers[row.ready];
             }
             row.has_dependents = !out_.place_dependents.row(p).empty();
         }
+        out_.place[places].ready = static_cast<std::uint32_t>(out_.watchers.size());
+        TransitionRow end;
+        end.takes = end.gives = static_cast<std::uint32_t>(out_.arcs.size());
+        out_.transition.push_back(end);
         out_.datum_dependents =
             make_rows(static_cast<std::uint32_t>(net_.data.size()), std::move(datum_dependents_));
         out_.event_listeners =
@@ -668,13 +669,13 @@ class Compiler {
             }
         }
         for (const TransitionRow& t : out_.transition) {
-            h.add_u64(t.gives).add_u64(t.end).add_u64(t.flags);
+            h.add_u64(t.takes).add_u64(t.gives).add_u64(t.flags);
         }
         for (const Weighted& w : out_.arcs) {
             h.add_u64(w.place).add_u64(w.weight);
         }
         for (const PlaceRow& p : out_.place) {
-            h.add_u64(p.total).add_u64(p.end).add_u64(p.duration);
+            h.add_u64(p.ready).add_u64(p.total).add_u64(p.duration);
         }
         for (const Watcher& w : out_.watchers) {
             h.add_u64(w.word).add_u64(w.threshold);

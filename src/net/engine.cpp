@@ -46,7 +46,13 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
     const std::uint64_t seed = options.seed;
     hot_.resize(n.transitions.size());
     for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
-        hot_[t].row = n.transition[t];
+        const TransitionRow& row = n.transition[t];
+        hot_[t].path_hash = hash_text(n.transitions.path(t));
+        hot_[t].takes = row.takes;
+        hot_[t].gives = row.gives;
+        hot_[t].end = n.transition[t + 1].takes;
+        hot_[t].level = row.level;
+        hot_[t].flags = row.flags;
         hot_[t].ticket_key = random_ ? stream_key(seed, n.transitions.path(t), "ticket") : 0;
     }
     for (const std::uint32_t p : n.stream_place) {
@@ -159,6 +165,14 @@ void Engine::rebuild() {
         h.ticket_draws = 0;
     }
     levels_.assign(n.level_priority.size(), Level{});
+    if (levels_.size() <= 64) {
+        const std::size_t few = std::min<std::size_t>(64, n.transitions.size());
+        for (std::uint32_t l = 0; l < levels_.size(); ++l) {
+            levels_[l].fresh.reserve(2 * few + 65);  // see enter()
+            state_.lotteries[l].run.reserve(few);
+            state_.lotteries[l].tickets.reserve(2 * few);
+        }
+    }
     marked_.assign(n.specials.size(), 0);
     touched_.assign(n.specials.size(), 0);
     last_odds_.assign(n.specials.size(), 1);
@@ -175,7 +189,7 @@ void Engine::rebuild() {
         count(n.total_watchers(p), state_.counts[p].total);
     }
     for (std::uint32_t t = 0; t < n.transitions.size(); ++t) {
-        if (hot_[t].row.flags != 0) {
+        if (hot_[t].flags != 0) {
             touch(t);
         } else if (hot_[t].unsatisfied == 0) {
             enter(t);
@@ -250,7 +264,7 @@ inline void Engine::ready_changed(std::uint32_t p, std::uint32_t from, std::uint
 
 inline void Engine::total_changed(std::uint32_t p, std::uint32_t from, std::uint32_t to) {
     const PlaceRow& row = tables_->place[p];
-    for (std::uint32_t i = row.total; i < row.end; ++i) {
+    for (std::uint32_t i = row.total, end = tables_->place[p + 1].ready; i < end; ++i) {
         cross(tables_->watchers[i], from, to);
     }
     if (row.has_dependents) {
@@ -306,7 +320,7 @@ std::uint32_t Engine::select() {
 double Engine::ticket(std::uint32_t t) {
     const double u = uniform_from_bits(random_bits(hot_[t].ticket_key, hot_[t].ticket_draws++));
     const double e = -puppetri::log(u);
-    return (hot_[t].row.flags & kHasOdds) != 0 ? e / odds(t) : e;
+    return (hot_[t].flags & kHasOdds) != 0 ? e / odds(t) : e;
 }
 
 // The run after its first: large nets wait for memory, not for arithmetic, so what the next firings
@@ -319,8 +333,8 @@ void Engine::look_ahead(const Lottery& lottery) const {
         return;
     }
     __builtin_prefetch(&hot_[next[16].transition]);
-    __builtin_prefetch(&n.arcs[hot_[next[10].transition].row.takes]);
-    const TransitionRow& row = hot_[next[5].transition].row;
+    __builtin_prefetch(&n.arcs[hot_[next[10].transition].takes]);
+    const Hot& row = hot_[next[5].transition];
     for (std::uint32_t i = row.takes; i < row.end && i < row.takes + 6; ++i) {
         __builtin_prefetch(&n.place[n.arcs[i].place]);
         __builtin_prefetch(&state_.counts[n.arcs[i].place]);
@@ -351,7 +365,7 @@ std::uint32_t Engine::race(std::uint32_t level) {
     Lottery& lottery = state_.lotteries[level];
     const auto before = [this](const Ticket& a, const Ticket& b) {
         return a.key != b.key ? a.key < b.key
-                              : hot_[a.transition].row.path_hash < hot_[b.transition].row.path_hash;
+                              : hot_[a.transition].path_hash < hot_[b.transition].path_hash;
     };
     if (l.live_fresh != 0) {
         const bool together = l.live_raced == 0 && tables_->level_has_odds[level] == 0;
@@ -536,20 +550,20 @@ void Engine::add_timed(std::uint32_t p, std::int64_t ticks, std::uint32_t fifo) 
 void Engine::fire(std::uint32_t t) {
     ++state_.firings;
     state_.last = t;
-    state_.log_hash = log_hash_step(state_.log_hash, state_.now, hot_[t].row.path_hash);
+    state_.log_hash = log_hash_step(state_.log_hash, state_.now, hot_[t].path_hash);
     if (++state_.instant_firings + 1024 > options_.firings_per_instant) {
         watch_instant(t);
     }
     if (options_.listener != nullptr) {
         options_.listener->fired({state_.now}, {t});
     }
-    const std::uint8_t flags = hot_[t].row.flags;
+    const std::uint8_t flags = hot_[t].flags;
     if ((flags & kFiresSpecially) != 0) {
         if ((flags & kOnlyDelayed) == 0) {
             fire_special(t);
             return;
         }
-        state_.clocks[tables_->specials[hot_[t].row.special].delay].clear();
+        state_.clocks[tables_->specials[tables_->transition[t].special].delay].clear();
     }
     take_plain(t);
     if (!touch_list_.empty()) {
@@ -560,7 +574,7 @@ void Engine::fire(std::uint32_t t) {
 }
 
 void Engine::finish_firing(std::uint32_t t) {
-    if ((hot_[t].row.flags & kGated) != 0) {
+    if ((hot_[t].flags & kGated) != 0) {
         touch(t);
     } else if (hot_[t].unsatisfied == 0 && (hot_[t].candidate & kStatus) == 0) {
         enter(t);

@@ -82,7 +82,10 @@ class Engine final : private Code::Reader {
         std::uint32_t candidate = 0;  // stamp * 4 + 0 no candidate, 1 without ticket, 2 with ticket
         std::uint64_t ticket_key = 0;
         std::uint64_t ticket_draws = 0;
-        TransitionRow row;  // a copy
+        std::uint64_t path_hash = 0;                  // for the log
+        std::uint32_t takes = 0, gives = 0, end = 0;  // copies of the net's row
+        std::uint16_t level = 0;
+        std::uint8_t flags = 0;
     };
     struct Fresh {
         std::uint32_t transition, stamp;
@@ -109,12 +112,12 @@ class Engine final : private Code::Reader {
     bool somebody_can_fire() const;
     void cross(const Watcher& w, std::uint32_t from, std::uint32_t to);
     void touch_dependents(std::uint32_t p);
-    std::uint32_t level_of(std::uint32_t t) const { return hot_[t].row.level; }
+    std::uint32_t level_of(std::uint32_t t) const { return hot_[t].level; }
     std::span<const Weighted> takes(std::uint32_t t) const {
-        return {tables_->arcs.data() + hot_[t].row.takes, tables_->arcs.data() + hot_[t].row.gives};
+        return {tables_->arcs.data() + hot_[t].takes, tables_->arcs.data() + hot_[t].gives};
     }
     std::span<const Weighted> gives(std::uint32_t t) const {
-        return {tables_->arcs.data() + hot_[t].row.gives, tables_->arcs.data() + hot_[t].row.end};
+        return {tables_->arcs.data() + hot_[t].gives, tables_->arcs.data() + hot_[t].end};
     }
     std::uint32_t select();
     std::uint32_t race(std::uint32_t level);

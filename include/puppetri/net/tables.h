@@ -129,24 +129,23 @@ enum TransitionFlag : std::uint8_t {
         8,  // gated by a delay with one server and enabling memory, and nothing else is special
 };
 
-// What a firing reads of a transition, side by side.
+// The arcs of a transition; the row after it says where they end.
 struct TransitionRow {
-    std::uint64_t path_hash = 0;     // for the log
-    std::uint32_t takes = 0;         // where its arcs from places without records begin in `arcs`,
-    std::uint32_t gives = 0;         // where those to places without records and with the place's duration,
-    std::uint32_t end = 0;           // and where they end
+    std::uint32_t takes = 0;  // where its arcs from places without records begin in `arcs`,
+    std::uint32_t gives = 0;  // and those to places without records and with the place's duration
     std::uint32_t special = kNoIndex;
-    std::uint16_t level = 0;         // 0: the highest priority
+    std::uint16_t level = 0;  // 0: the highest priority
     std::uint8_t flags = 0;
 };
 
-// What a change of a place reads.
+// What a change of a place reads; the row after it says where its watchers end.
 struct PlaceRow {
-    std::uint32_t ready = 0;         // where its watchers of the number of ready tokens begin in `watchers`,
-    std::uint32_t total = 0;         // where those of the number of tokens (never of kCount: there both are one),
-    std::uint32_t end = 0;           // and where they end
+    std::uint32_t ready =
+        0;  // where its watchers of the number of ready tokens begin in `watchers`,
+    std::uint32_t total =
+        0;  // and those of the number of tokens (never of kCount: there both are one)
     std::uint32_t duration = kNoIndex;  // of kTimed and kRich: number in `durations`; kNoIndex: 0
-    Watcher first;                   // a copy of watchers[ready], if there is one
+    Watcher first;                      // a copy of watchers[ready], if there is one
     PlaceKind kind = PlaceKind::kCount;
     bool has_dependents = false;
 };
@@ -156,10 +155,10 @@ struct NetTables {
     std::vector<std::uint32_t> place_map, transition_map;  // from the draft
 
     // Places.
-    std::vector<PlaceRow> place;
+    std::vector<PlaceRow> place;  // and one more
     std::vector<Watcher> watchers;
-    std::vector<std::uint32_t> place_rich;      // empty, or per place the number in `rich`
-    Rows<std::uint32_t> place_dependents;  // transitions to look at again when the place changes
+    std::vector<std::uint32_t> place_rich;  // empty, or per place the number in `rich`
+    Rows<std::uint32_t> place_dependents;   // transitions to look at again when the place changes
     Rows<std::uint32_t> datum_dependents;
     std::vector<DurationTable> durations;
     std::vector<RichPlaceTable> rich;
@@ -169,26 +168,26 @@ struct NetTables {
     std::vector<std::uint32_t> token_stream_place;
 
     // Transitions.
-    std::vector<TransitionRow> transition;
+    std::vector<TransitionRow> transition;  // and one more
     std::vector<Weighted> arcs;
     std::vector<Special> specials;
     std::vector<DelayTable> delays;
     std::vector<std::int64_t> level_priority;  // descending
     std::vector<std::uint8_t>
-        level_has_odds;                    // some transition of the priority has odds other than 1
+        level_has_odds;  // some transition of the priority has odds other than 1
     std::vector<std::uint32_t> unconditional;  // transitions without any condition on counts
 
     std::span<const Weighted> takes(std::uint32_t t) const {
         return {arcs.data() + transition[t].takes, arcs.data() + transition[t].gives};
     }
     std::span<const Weighted> gives(std::uint32_t t) const {
-        return {arcs.data() + transition[t].gives, arcs.data() + transition[t].end};
+        return {arcs.data() + transition[t].gives, arcs.data() + transition[t + 1].takes};
     }
     std::span<const Watcher> ready_watchers(std::uint32_t p) const {
         return {watchers.data() + place[p].ready, watchers.data() + place[p].total};
     }
     std::span<const Watcher> total_watchers(std::uint32_t p) const {
-        return {watchers.data() + place[p].total, watchers.data() + place[p].end};
+        return {watchers.data() + place[p].total, watchers.data() + place[p + 1].ready};
     }
 
     Rows<std::uint32_t> event_listeners;
