@@ -188,11 +188,12 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
     if (now.planted) {
         landing.print = footprint_of(figure, side, now);
         landing.path.stand(0, landing.print);
-        // A foot that is nearly flat gets there sooner.
-        const double tilt = std::fabs(now.pitch.position) + 0.05 * std::fabs(now.pitch.velocity);
-        if (tilt > 1e-9) {
-            landing.flat_s = clamp(kRollFlat_s * std::sqrt(tilt / 0.15), 0.03, kRollFlat_s);
-            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {landing.flat_s, {}}));
+        if (std::fabs(now.pitch.position) > 1e-9 || std::fabs(now.pitch.velocity) > 1e-9) {
+            // A foot that is flat but for a hair may leave at once.
+            const bool rolls =
+                std::fabs(now.pitch.position) > radians(1) || std::fabs(now.pitch.velocity) > 0.3;
+            landing.flat_s = rolls ? kRollFlat_s : 0;
+            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {kRollFlat_s, {}}));
         }
         return landing;
     }

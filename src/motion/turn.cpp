@@ -22,7 +22,8 @@
 namespace puppetri::motion {
 namespace {
 
-constexpr double kNoStep = radians(3), kPairMost = radians(112);
+constexpr double kNoStep = radians(3), kPairMost = radians(100), kPairAtAll = radians(125);
+constexpr double kStep_s = 0.22;  // a step at ease
 constexpr double kAside = 0.040;  // of the height, at 90 degrees
 constexpr double kClearance_m = 0.028;
 constexpr double kGround_s = 0.012;  // both feet stand this long between two steps
@@ -81,7 +82,7 @@ class Turn final : public Movement {
     struct Swing {
         Side side;
         double begin_s, end_s, yaw_from, yaw_to;
-        Vec3 from, to;  // ankle, flat
+        Vec3 to;  // ankle, flat
     };
 
     // Where the point between the feet goes for a turn by `angle` from `heading`.
@@ -107,7 +108,12 @@ class Turn final : public Movement {
         }
         centre_[0] = (ankle[0] + ankle[1]) * 0.5;
         const bool moves = std::fabs(angle_) >= kNoStep && ready_s < 0.5 * T_;
-        const int pairs = moves ? 1 + static_cast<int>(std::fabs(angle_) / kPairMost) : 0;
+        // One pair of steps is quicker than two and goes up to 125 degrees; more pairs where there
+        // is time for them.
+        const int wanted = 1 + static_cast<int>(std::fabs(angle_) / kPairMost);
+        const int leisure = std::max(std::fabs(angle_) > kPairAtAll ? 2 : 1,
+                                     static_cast<int>((T_ - ready_s) / (2 * kStep_s)));
+        const int pairs = moves ? std::min(wanted, leisure) : 0;
         Vec3 centre = centre_[0];
         double heading = from_;
         std::vector<Swing> swings;
@@ -126,7 +132,7 @@ class Turn final : public Movement {
             const double begin = ready_s + k * window;
             const double to_yaw = yaw[i] + turn_between(yaw[i], heading);
             swings.push_back({side, begin + (k == 0 ? 0 : kGround_s / 2),
-                              begin + window - kGround_s / 2, yaw[i], to_yaw, ankle[i], to});
+                              begin + window - kGround_s / 2, yaw[i], to_yaw, to});
             ankle[i] = to;
             yaw[i] = to_yaw;
         }
@@ -163,17 +169,23 @@ class Turn final : public Movement {
         swings_ = std::move(swings);
     }
 
+    // From rest to rest with an acceleration at both ends: the peak velocity is 1.45 times the mean
+    // (1.88 for least jerk).
+    static Curve1 quick(double begin_s, double a, double end_s, double b) {
+        const double d = end_s - begin_s, push = 7 * (b - a) / (d * d);
+        return minimum_jerk({begin_s, {a, 0, push}}, {}, {end_s, {b, 0, -push}});
+    }
+
     void add_swing(const Swing& s) {
-        auto line = [&](double a, double b) {
-            return minimum_jerk({s.begin_s, {a, 0, 0}}, {}, {s.end_s, {b, 0, 0}});
-        };
+        FootPath& foot = feet_[index_of(s.side)];
+        const Vec3 from = foot.at(s.begin_s).ankle_world;
         const double middle = (s.begin_s + s.end_s) / 2, top = s.to.y + kClearance_m;
         Curve3 ankle{
-            line(s.from.x, s.to.x),
-            minimum_jerk({s.begin_s, {s.from.y, 0, 0}}, {{middle, top}}, {s.end_s, {s.to.y, 0, 0}}),
-            line(s.from.z, s.to.z)};
-        FootPath& foot = feet_[index_of(s.side)];
-        foot.swing(s.begin_s, {}, std::move(ankle), line(s.yaw_from, s.yaw_to), Curve1());
+            quick(s.begin_s, from.x, s.end_s, s.to.x),
+            minimum_jerk({s.begin_s, {from.y, 0, 0}}, {{middle, top}}, {s.end_s, {s.to.y, 0, 0}}),
+            quick(s.begin_s, from.z, s.end_s, s.to.z)};
+        foot.swing(s.begin_s, {}, std::move(ankle), quick(s.begin_s, s.yaw_from, s.end_s, s.yaw_to),
+                   Curve1());
         foot.stand(s.end_s, footprint_at(figure_, s.side, s.to, s.yaw_to));
     }
 
