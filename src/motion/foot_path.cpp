@@ -220,11 +220,11 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
 // With the highest reach h and a margin w the height y becomes y - d^2 / (4 w) for d = y - (h - w)
 // in [0, 2 w], which joins y below and h above with a continuous slope.
 void keep_reach(const figure::Figure& figure, Controls& c) {
-    constexpr double kReach = 0.9979;
+    constexpr double kReach = 0.9990;
     for (int side = 0; side < 2; ++side) {
         const Vec3 hip = rotate(c.pelvis.rotation_world, figure.legs[side].hip_pelvis);
         const Vec3 d = c.pelvis.position_world + hip - c.legs[side].ankle_world;
-        const double r = kReach * figure.leg_m, w = 0.0004;
+        const double r = kReach * figure.leg_m, w = 0.0009;
         const double highest = c.legs[side].ankle_world.y - hip.y +
                                std::sqrt(std::fmax(r * r - d.x * d.x - d.z * d.z, 0.04 * r * r));
         const double over = c.pelvis.position_world.y - (highest - w);

@@ -27,7 +27,7 @@ constexpr double kStep_s = 0.22;  // a step at ease
 constexpr double kAside = 0.040;  // of the height, at 90 degrees
 constexpr double kClearance_m = 0.028;
 constexpr double kGround_s = 0.012;  // both feet stand this long between two steps
-constexpr double kLongest = 0.9972;
+constexpr double kLongest = 0.9972;  // reach of the legs, as for walking
 
 class Turn final : public Movement {
  public:
@@ -206,11 +206,14 @@ class Turn final : public Movement {
             x.push_back({t, way.x + 0.08 * (stands.x - centre.x)});
             z.push_back({t, way.z + 0.08 * (stands.z - centre.z)});
         }
-        pelvis_.x = minimum_jerk({0, {p.x, v.x, 0}}, x, {T_, {home.position_world.x, 0, 0}});
-        pelvis_.z = minimum_jerk({0, {p.z, v.z, 0}}, z, {T_, {home.position_world.z, 0, 0}});
+        // It begins to stop at once.
+        const Vec3 brake = v * (-1 / 0.18);
+        pelvis_.x = minimum_jerk({0, {p.x, v.x, brake.x}}, x, {T_, {home.position_world.x, 0, 0}});
+        pelvis_.z = minimum_jerk({0, {p.z, v.z, brake.z}}, z, {T_, {home.position_world.z, 0, 0}});
         yaw_ = minimum_jerk({0, {from_, 0, 0}}, {}, {T_, {to_, 0, 0}});
         HeightPlan height;
-        height.from = {p.y, v.y, 0};
+        // One that rises is about to stretch its legs: it stops sooner still.
+        height.from = {p.y, v.y, v.y > 0 ? 2.2 * brake.y : brake.y};
         height.duration_s = T_;
         height.to = {home.position_world.y, 0, 0};
         constexpr int kBands = 16;
@@ -223,15 +226,17 @@ class Turn final : public Movement {
                     rotate(about_y(yaw_.at(t).position), figure_.legs[side].hip_pelvis);
                 const double dx = pelvis_.x.at(t).position + hip.x - leg.ankle_world.x;
                 const double dz = pelvis_.z.at(t).position + hip.z - leg.ankle_world.z;
-                const double r = kLongest * figure_.leg_m;
-                band.highest = std::fmin(band.highest,
-                                         leg.ankle_world.y - hip.y +
-                                             std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01)));
+                auto reach = [&](double part) {
+                    const double r = part * figure_.leg_m;
+                    return leg.ankle_world.y - hip.y +
+                           std::sqrt(std::fmax(r * r - dx * dx - dz * dz, 0.01));
+                };
+                band.highest = std::fmin(band.highest, reach(kLongest));
             }
-            // A figure that starts with bent knees takes the whole turn to stand up.
-            const double lowest = band.highest - 0.012 * figure_.height_m;
-            band.lowest =
-                std::fmin(lowest, lerp(p.y - 0.01 * figure_.height_m, lowest, smooth_rise(t, T_)));
+            // A figure that crouches when the turn begins comes up by and by.
+            const double low = 0.012 * figure_.height_m, rest = (1 - t / T_) * (1 - t / T_);
+            band.lowest = band.highest - low - std::fmax(0, band.highest - low - p.y) * rest;
+            band.wanted = 0.4;
             height.bands.push_back(band);
         }
         pelvis_.y = plan_height(height);
