@@ -81,8 +81,8 @@ class Planner {
         const double T = plan_.duration_s;
         half_ = (clamp(spec_.duty_factor, 0.2, 0.9) - 0.5) *
                 n_;  // half of the double support; negative: of the flight
-        // Half steps leave and reach rest, where both feet stand anyway: whatever the duty factor, they keep their swing
-        // from becoming a kick, and use a frame of their ends too.
+        // Half steps leave and reach rest, where both feet stand anyway: whatever the duty factor,
+        // they keep their swing from becoming a kick, and use a frame of their ends too.
         const double shift = std::fmin(0.049 * n_, std::fmax(half_, 0) * 0.5);
         const double half = std::fmin(half_, 0.14 * n_);
         plan_.lift_s = first_ ? shift : last_ ? half - shift : half_;
@@ -413,7 +413,9 @@ class Planner {
             };
             const bool lands = transfers && !last_ && t > plan_.strike_s - 0.1 * n_ &&
                                t < plan_.strike_s + 0.03 * n_;
-            b.highest = std::fmin(b.highest, height(lands ? kLanding : kLongest));
+            const bool leaves =
+                transfers && !first_ && t >= plan_.lift_s && t < plan_.lift_s + 0.12 * n_;
+            b.highest = std::fmin(b.highest, height(lands || leaves ? kLanding : kLongest));
             if (stands) {
                 b.lowest = std::fmax(b.lowest, height(kShortest));
                 b.limit = std::fmin(b.limit, height(kSlips));
