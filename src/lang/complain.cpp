@@ -11,16 +11,37 @@
 namespace puppetri::lang {
 namespace {
 
-constexpr std::array kStatementWords = {
-    Kind::kPlace,  Kind::kState,  Kind::kData,  Kind::kEnum,     Kind::kToken,
-    Kind::kEvent,  Kind::kEvents, Kind::kUse,   Kind::kRule,     Kind::kFor,
-    Kind::kNet,    Kind::kCast,   Kind::kEnd,   Kind::kLanguage, Kind::kScene,
-    Kind::kFrames, Kind::kUntil,  Kind::kSeed,  Kind::kPace,     Kind::kTime,
-    Kind::kImport, Kind::kPublic, Kind::kStart, Kind::kFinish,   Kind::kConsumed};
-
-bool begins_statement(Kind kind) {
-    return std::find(kStatementWords.begin(), kStatementWords.end(), kind) != kStatementWords.end();
-}
+// How each statement is written, for the remedy.
+struct Form {
+    Kind word;
+    std::string_view form;
+};
+constexpr std::array kForms = {
+    Form{Kind::kPlace, "place NAME \"caption\" does WHO.MOVEMENT(...) takes 2 s tokens 1"},
+    Form{Kind::kStart, "start place NAME"},
+    Form{Kind::kFinish, "finish place NAME"},
+    Form{Kind::kState, "state NAME = A and B"},
+    Form{Kind::kData, "data NAME: 0 .. 5 = 0"},
+    Form{Kind::kEnum, "enum NAME { a, b, c }"},
+    Form{Kind::kToken, "token NAME(attribute: TYPE)"},
+    Form{Kind::kEvent, "event NAME at 2 s, 3.5 s, or event NAME every 2 s"},
+    Form{Kind::kConsumed, "consumed event NAME"},
+    Form{Kind::kEvents, "events from \"FILE\""},
+    Form{Kind::kUse, "use NET(ARGUMENTS) as NAME"},
+    Form{Kind::kRule, "rule NAME \"caption\" never A and B, or A leads to B within 2 s, ..."},
+    Form{Kind::kFor, "for NAME in (a, b) { ... }, or for NAME in 1 .. 5 { ... }"},
+    Form{Kind::kNet, "net NAME(PARAMETER: TYPE, ...) { ... }"},
+    Form{Kind::kCast, "cast { NAME: mannequin { height 1.75 m } }"},
+    Form{Kind::kEnd, "end { A and B }"},
+    Form{Kind::kLanguage, "language 1"},
+    Form{Kind::kScene, "scene \"TITLE\""},
+    Form{Kind::kFrames, "frames 24 per second"},
+    Form{Kind::kUntil, "until 40 s, or until frame 960"},
+    Form{Kind::kSeed, "seed 7"},
+    Form{Kind::kPace, "pace 1 s"},
+    Form{Kind::kTime, "time unit 1 min"},
+    Form{Kind::kImport, "import NAME from \"FILE\""},
+};
 
 class Complaint {
  public:
@@ -40,7 +61,7 @@ class Complaint {
             error(at_, "too-deep", "this is nested too deeply",
                   "name parts of it as states, and use the names");
         } else if (!unclosed_bracket() && !unknown_statement() && !space_before_arguments() &&
-                   !double_arrow() && !unknown_form() && !unknown_word()) {
+                   !double_arrow() && !runs_on() && !unknown_form() && !unknown_word()) {
             expected();
         }
     }
@@ -103,6 +124,11 @@ class Complaint {
         if (has_colon || begins_statement(kind)) {
             return false;
         }
+        if (has_arrow && text(first) == "transition") {
+            error(first, "unknown-keyword", "a transition begins with its name",
+                  "leave the word transition out");
+            return true;
+        }
         if (has_arrow) {
             error(first, "missing-name", "a transition needs a name and a colon",
                   "write NAME: P1 -> P2");
@@ -114,9 +140,10 @@ class Complaint {
             return true;
         }
         std::vector<std::string> known;
-        for (const Kind word : kStatementWords) {
-            known.emplace_back(keyword_text(word));
+        for (const Form& form : kForms) {
+            known.emplace_back(keyword_text(form.word));
         }
+        known.emplace_back("public");
         const std::string_view nearest = nearest_name(text(first), known);
         error(first, "unknown-keyword", "no statement begins with '" + text(first) + "'",
               nearest.empty() ? "write place, rule, use ..., or NAME: P1 -> P2 for a transition"
@@ -175,13 +202,13 @@ class Complaint {
         struct Alias {
             std::string_view word, unit;
         };
-        static constexpr std::array<Alias, 22> kAliases = {
+        static constexpr std::array<Alias, 21> kAliases = {
             {{"sec", "s"},      {"secs", "s"},      {"second", "s"},       {"seconds", "s"},
              {"minute", "min"}, {"minutes", "min"}, {"mins", "min"},       {"hour", "h"},
              {"hours", "h"},    {"msec", "ms"},     {"millisecond", "ms"}, {"milliseconds", "ms"},
              {"meter", "m"},    {"meters", "m"},    {"metre", "m"},        {"metres", "m"},
              {"degree", "deg"}, {"degrees", "deg"}, {"radians", "rad"},    {"kilogram", "kg"},
-             {"newton", "N"},   {"fps", "Hz"}}};
+             {"newton", "N"}}};
         for (const Alias& alias : kAliases) {
             if (alias.word == word) {
                 return alias.unit;
@@ -190,8 +217,28 @@ class Complaint {
         return "";
     }
 
+    // t: a -> b when x and
+    // u: b -> a
+    bool runs_on() {
+        if (ended() || at_ < begin_ + 2 || token(at_).kind != Kind::kColon) {
+            return false;
+        }
+        const std::uint32_t last = at_ - 2;
+        const std::string_view between =
+            report_.text().substr(token(last).end, token(at_ - 1).begin - token(last).end);
+        if (between.find('\n') == std::string_view::npos) {
+            return false;
+        }
+        error(last, "syntax",
+              "the line ends with '" + text(last) +
+                  "', so that the statement goes on with the next line",
+              "complete it on this line, or remove '" + text(last) + "'");
+        return true;
+    }
+
     bool unknown_word() {
-        if (ended() || !is_word(token(at_).kind) || could_be(Kind::kWord)) {
+        if (token(begin_).kind == Kind::kFrames || ended() || !is_word(token(at_).kind) ||
+            could_be(Kind::kWord)) {
             return false;
         }
         const bool after_number =
@@ -265,7 +312,9 @@ class Complaint {
         }
         for (std::size_t i = 0; i < 256; ++i) {
             const auto kind = static_cast<Kind>(i);
-            if (!reading_.expected.test(i) || describe(kind).empty() || is_operator(kind)) {
+            const bool path_operator = kind == Kind::kUntil && could_be(Kind::kRelease);
+            if (!reading_.expected.test(i) || describe(kind).empty() || is_operator(kind) ||
+                path_operator) {
                 continue;
             }
             const bool of_value = kind == Kind::kNumber || kind == Kind::kOpenParen ||
@@ -296,8 +345,46 @@ class Complaint {
         }
         error(at_, "syntax",
               list.empty() ? found + " cannot stand here" : "expected " + list + ", found " + found,
-              ended() ? "complete the statement on this line"
-                      : "remove it, or write what is missing before it");
+              remedy());
+    }
+
+    std::string remedy() const {
+        const bool after_number = at_ > begin_ && token(at_ - 1).kind == Kind::kNumber;
+        if (!ended() && after_number && token(at_).kind == Kind::kComma && at_ + 1 < end_ &&
+            token(at_ + 1).kind == Kind::kNumber && !token(at_ + 1).space_before) {
+            return "write " + text(at_ - 1) + "." + text(at_ + 1);
+        }
+        if (!ended() && after_number && is_word(token(at_).kind) && could_be(Kind::kTimes) &&
+            !could_be(Kind::kPer)) {
+            return "write " + text(at_ - 1) + "*" + text(at_);
+        }
+        switch (entry_) {
+            case Entry::kProperty:
+                return "write PROPERTY VALUE, with commas or line ends between";
+            case Entry::kMember:
+                return "write NAME: KIND { PROPERTY VALUE, ... }";
+            case Entry::kFormula:
+                return "write one formula on each line";
+            case Entry::kEnumValue:
+                return "write names, with commas between";
+            case Entry::kStatement:
+                break;
+        }
+        const std::uint32_t first =
+            begin_ + (token(begin_).kind == Kind::kPublic && begin_ + 1 < end_ ? 1 : 0);
+        const auto is_colon = [&](std::uint32_t i) {
+            return i < end_ && token(i).kind == Kind::kColon;
+        };
+        const bool captioned = first + 1 < end_ && token(first + 1).kind == Kind::kString;
+        if (is_colon(first + 1) || (captioned && is_colon(first + 2))) {
+            return "write NAME: P1 + 2*P2 -> P3 priority 2 when ...";
+        }
+        for (const Form& form : kForms) {
+            if (form.word == token(first).kind) {
+                return "write " + std::string(form.form);
+            }
+        }
+        return "complete the statement on this line";
     }
 
     Entry entry_;

@@ -341,7 +341,18 @@ struct net : statement<N::kNet, tok<K::kNet>, name, opt<parameters>, opt<caption
 struct cast : statement<N::kCast, tok<K::kCast>> {};
 struct ends : statement<N::kEnds, tok<K::kEnd>> {};
 struct enumeration : statement<N::kEnum, tok<K::kEnum>, name> {};
-struct block : statement<N::kBlock, name, opt<name>, opt<parameters>> {};
+// Its kind is any word that begins no other statement.
+struct other_word : terminal {
+    using rule_t = other_word;
+    PUP_MATCH {
+        if (!in.empty() && word::takes(reader.tokens[reader.at(in)].kind) && !begins_statement(reader.tokens[reader.at(in)].kind)) {
+            in.bump_in_this_line(1);
+            return true;
+        }
+        return false;
+    }
+};
+struct block : statement<N::kBlock, node<N::kName, other_word>, opt<name>, opt<parameters>> {};
 
 // ---- files
 

@@ -126,7 +126,7 @@ struct not_equal : peg::string<'!', '='> {};
 struct less_equal : peg::string<'<', '='> {};
 struct greater_equal : peg::string<'>', '='> {};
 struct symbol : peg::one<'(', ')', '[', ']', '{', '}', ',', ':', '<', '>', '+', '-', '*', '/', '^', '?', '.'> {};
-struct stray : peg::utf8::any {};
+struct stray : peg::sor<peg::string<'&', '&'>, peg::string<'|', '|'>, peg::utf8::any> {};
 struct token : peg::sor<blank, word, line_end, number, text, quoted_name, count, comment, arrow, assign, dots, equal,
                         not_equal, less_equal, greater_equal, symbol, open_text, join, stray> {};
 struct tokens : peg::until<peg::eof, token> {};
@@ -232,50 +232,59 @@ struct action<open_text> {
     }
 };
 
-// What a word processor makes of plain characters.
+// What word processors and other languages write for a token of this one. Read as what is meant,
+// once it has been told, so that nothing else of the statement is blamed for it.
 struct LookAlike {
-    std::string_view character, remedy;
+    std::string_view written;
+    Kind meant;  // kEndOfFile: nothing
+    std::string_view remedy;
 };
-constexpr std::array<LookAlike, 12> kLookAlikes = {{{"\xE2\x86\x92", "write ->"},
-                                                    {"\xE2\x80\x9C", "write \""},
-                                                    {"\xE2\x80\x9D", "write \""},
-                                                    {"\xE2\x80\x98", "write '"},
-                                                    {"\xE2\x80\x99", "write '"},
-                                                    {"\xE2\x88\x92", "write -"},
-                                                    {"\xE2\x80\x93", "write -"},
-                                                    {"\xC3\x97", "write *"},
-                                                    {"\xC2\xB7", "write *"},
-                                                    {"\xE2\x89\xA4", "write <="},
-                                                    {"\xE2\x89\xA5", "write >="},
-                                                    {"\xE2\x80\xA6", "write .."}}};
+constexpr std::array kLookAlikes = {
+    LookAlike{"\xE2\x86\x92", Kind::kArrow, "write ->"},
+    LookAlike{"\xE2\x88\x92", Kind::kMinus, "write -"},
+    LookAlike{"\xE2\x80\x93", Kind::kMinus, "write -"},
+    LookAlike{"\xC3\x97", Kind::kTimes, "write *"},
+    LookAlike{"\xC2\xB7", Kind::kTimes, "write *"},
+    LookAlike{"\xE2\x89\xA4", Kind::kLessEqual, "write <="},
+    LookAlike{"\xE2\x89\xA5", Kind::kGreaterEqual, "write >="},
+    LookAlike{"\xE2\x89\xA0", Kind::kNotEqual, "write !="},
+    LookAlike{"\xE2\x80\xA6", Kind::kDots, "write .."},
+    LookAlike{"&&", Kind::kAnd, "write and"},
+    LookAlike{"&", Kind::kAnd, "write and"},
+    LookAlike{"||", Kind::kOr, "write or"},
+    LookAlike{"|", Kind::kOr, "write or"},
+    LookAlike{"!", Kind::kNot, "write not"},
+    LookAlike{";", Kind::kNewline, "put each statement on a line of its own"},
+    LookAlike{"\xE2\x80\x9C", Kind::kEndOfFile, "write \""},
+    LookAlike{"\xE2\x80\x9D", Kind::kEndOfFile, "write \""},
+    LookAlike{"\xE2\x80\x98", Kind::kEndOfFile, "write '"},
+    LookAlike{"\xE2\x80\x99", Kind::kEndOfFile, "write '"},
+};
 
 template <>
 struct action<stray> {
     template <class In>
     static void apply(const In& in, Lexer& lexer) {
         const std::string_view text(in.begin(), in.size());
-        std::string message = "this character has no meaning here";
-        std::string remedy = "remove it, or put it into quotes";
-        if (text.size() == 1 && static_cast<unsigned char>(text[0]) < 0x20) {
-            constexpr char digits[] = "0123456789abcdef";
-            const auto c = static_cast<unsigned char>(text[0]);
-            message =
-                std::string("a control character (0x") + digits[c >> 4] + digits[c & 15] + ")";
-            remedy = "remove it; is this a text file?";
-        } else if (text == ";") {
-            remedy = "put each statement on a line of its own";
-        } else if (text == "&" || text == "|") {
-            remedy = text == "&" ? "write and" : "write or";
-        } else if (text == "!") {
-            remedy = "write not";
-        }
-        for (const LookAlike& look : kLookAlikes) {
-            if (look.character == text) {
-                remedy = look.remedy;
+        if (is_control_character(text[0])) {  // has been told for the whole file
+            if (text[0] == '\r') {
+                lexer.add(Kind::kNewline, in.begin(), in.end());
             }
+            lexer.space = true;
+            return;
         }
-        lexer.report.error(lexer.offset(in.begin()), lexer.offset(in.end()), "invalid-character",
-                           "", message, remedy);
+        const auto found =
+            std::find_if(kLookAlikes.begin(), kLookAlikes.end(),
+                         [&](const LookAlike& look) { return look.written == text; });
+        const bool known = found != kLookAlikes.end();
+        lexer.report.error(
+            lexer.offset(in.begin()), lexer.offset(in.end()), "invalid-character", "",
+            text.size() == 2 && text[0] == text[1] ? "this is no operator"
+                                                   : "this character has no meaning here",
+            known ? std::string(found->remedy) : "remove it, or put it into quotes");
+        if (known && found->meant != Kind::kEndOfFile) {
+            lexer.add(found->meant, in.begin(), in.end());
+        }
         lexer.space = true;
     }
 };
@@ -313,7 +322,7 @@ bool continues_before(Kind kind) {
            kind == Kind::kImplies || kind == Kind::kOpenBlock;
 }
 // `place NAME` and the like cannot stand inside brackets: a closing bracket was forgotten.
-bool begins_statement(const Token& first, const Token& second) {
+bool forgets_bracket(const Token& first, const Token& second) {
     switch (first.kind) {
         case Kind::kPlace:
         case Kind::kRule:
@@ -357,7 +366,7 @@ void drop_line_ends_that_continue(std::vector<Token>& list) {
             }
             if (next < list.size()) {
                 if (open > 0 && next + 1 < list.size() &&
-                    begins_statement(list[next], list[next + 1])) {
+                    forgets_bracket(list[next], list[next + 1])) {
                     open = 0;
                 } else if (open > 0 || continues_after(list[kept - 1].kind) ||
                            continues_before(list[next].kind)) {
@@ -378,6 +387,39 @@ Kind keyword_kind(std::string_view word) {
         return Kind::kWord;
     }
     return static_cast<Kind>(kFirstKeyword + (found - kKeywords.begin()));
+}
+
+bool begins_statement(Kind kind) {
+    switch (kind) {
+        case Kind::kPlace:
+        case Kind::kState:
+        case Kind::kData:
+        case Kind::kEnum:
+        case Kind::kToken:
+        case Kind::kEvent:
+        case Kind::kEvents:
+        case Kind::kUse:
+        case Kind::kRule:
+        case Kind::kFor:
+        case Kind::kNet:
+        case Kind::kCast:
+        case Kind::kEnd:
+        case Kind::kLanguage:
+        case Kind::kScene:
+        case Kind::kFrames:
+        case Kind::kUntil:
+        case Kind::kSeed:
+        case Kind::kPace:
+        case Kind::kTime:
+        case Kind::kImport:
+        case Kind::kPublic:
+        case Kind::kStart:
+        case Kind::kFinish:
+        case Kind::kConsumed:
+            return true;
+        default:
+            return false;
+    }
 }
 
 std::string_view describe(Kind kind) {

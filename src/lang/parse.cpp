@@ -342,32 +342,10 @@ class Parser {
         static const std::vector<std::string> known = {"net"};
         return kind(begin) == Kind::kWord && !nearest_name(text(begin), known).empty();
     }
-    // A head like a block's whose kind is a keyword, or nearly one.
+    // A head like a block's whose kind was meant to be a statement's.
     bool misspelt_block(std::uint32_t begin) const {
         static const std::vector<std::string> known = {"net", "cast", "enum"};
-        switch (kind(begin)) {
-            case Kind::kWord:
-                return text(begin) != "set" && !nearest_name(text(begin), known).empty();
-            case Kind::kPlace:
-            case Kind::kRule:
-            case Kind::kNet:
-            case Kind::kCast:
-            case Kind::kUse:
-            case Kind::kEvent:
-            case Kind::kState:
-            case Kind::kData:
-            case Kind::kToken:
-            case Kind::kFor:
-            case Kind::kEnd:
-            case Kind::kEnum:
-            case Kind::kScene:
-            case Kind::kImport:
-            case Kind::kPublic:
-            case Kind::kEvents:
-                return true;
-            default:
-                return false;
-        }
+        return kind(begin) == Kind::kWord && !nearest_name(text(begin), known).empty();
     }
     std::string_view text(std::uint32_t i) const {
         return std::string_view(file_.text)
@@ -550,6 +528,24 @@ std::vector<std::uint32_t> find_lines(std::string_view text) {
     return out;
 }
 
+// Anywhere, also inside of texts and comments: nobody sees them, and terminals act on them.
+void tell_control_characters(const File& file, std::uint32_t number, Diagnostics& out) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    Report report(file, number, out);
+    for (std::size_t i = 0; i < file.text.size() && !report.full(); ++i) {
+        const char c = file.text[i];
+        const bool line_end = c == '\r' && i + 1 < file.text.size() && file.text[i + 1] == '\n';
+        if (is_control_character(c) && !line_end) {
+            const auto at = static_cast<std::uint32_t>(i);
+            const auto code = static_cast<unsigned char>(c);
+            report.error(at, at + 1, "invalid-character", "",
+                         std::string("a control character (0x") + kDigits[code >> 4] +
+                             kDigits[code & 15] + ")",
+                         "remove it; is this a text file?");
+        }
+    }
+}
+
 }  // namespace
 
 Parsed parse(std::string_view text, std::string_view filename, std::uint32_t file) {
@@ -580,6 +576,7 @@ Parsed parse(std::string_view text, std::string_view filename, std::uint32_t fil
                    "save the file as UTF-8");
         return out;
     }
+    tell_control_characters(out.file, file, out.diagnostics);
     Parser(out.file, file, out.diagnostics).run();
     std::stable_sort(out.diagnostics.begin(), out.diagnostics.end(),
                      [](const Diagnostic& a, const Diagnostic& b) {

@@ -299,6 +299,14 @@ struct Tokens {
 //         quotes and texts without an end; these are left out.
 Tokens tokenize(std::string_view text, Report& report);
 
+// The words that begin statements, but for the names of transitions and the kinds of blocks.
+bool begins_statement(Kind kind);
+
+// Characters that no text has, but for tabs and line ends.
+constexpr bool is_control_character(char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') || c == 0x7F;
+}
+
 // "'->'", "a name", "'takes'": for messages.
 std::string_view describe(Kind kind);
 

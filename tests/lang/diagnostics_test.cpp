@@ -97,6 +97,26 @@ TEST_CASE("the remedy names the nearest known word [unit]") {
     CHECK(remedy("scene \"A\"\nimprot walk from \"walk.pup\"") == "did you mean import?");
 }
 
+TEST_CASE("where nothing is near, the remedy shows how the statement is written [unit]") {
+    CHECK(remedy("import \"walk.pup\"") == "write import NAME from \"FILE\"");
+    CHECK(remedy("frames 24 fps") == "write frames 24 per second");
+    CHECK(remedy("data x: int := 2") == "write data NAME: 0 .. 5 = 0");
+    CHECK(remedy("t: a --> b") == "write NAME: P1 + 2*P2 -> P3 priority 2 when ...");
+    CHECK(remedy("t: 2 a -> b") == "write 2*a");
+    CHECK(remedy("place a takes 1,5 s") == "write 1.5");
+    CHECK(remedy("transition t: a -> b") == "leave the word transition out");
+    CHECK(remedy("a -> b") == "write NAME: P1 -> P2");
+    CHECK(defects("t: a -> b when x and\nu: b -> a") == "1:18+3 syntax\n");
+}
+
+TEST_CASE("what other languages write is read as it was meant, once it has been told [unit]") {
+    CHECK(defects("state s = a && !b || c") ==
+          "1:13+2 invalid-character\n1:16+1 invalid-character\n1:19+2 invalid-character\n");
+    CHECK(defects("place a; place b taks 2 s") ==
+          "1:8+1 invalid-character\n1:18+4 unknown-keyword\n");
+    CHECK(defects("t: a \xE2\x86\x92 b") == "1:6+1 invalid-character\n");
+}
+
 TEST_CASE("a defect in one statement does not spoil the others [unit]") {
     const Parsed result =
         parse("place a\nplace b taks 2\nplace c\nnet n(x { place d\nplace e }\nplace f", "t.pup");
@@ -132,6 +152,8 @@ TEST_CASE("characters that mean nothing are told with what to write [unit]") {
     CHECK(defects("place b does 'a") == "1:14+2 unterminated-text\n");
     const std::string nul("place a\nplace \0b\n", 17);
     CHECK(defects(nul) == "2:7+1 invalid-character\n");
+    CHECK(defects("place a \"x\x1B[31m\"  # \x07\rplace b") ==
+          "1:11+1 invalid-character\n1:21+1 invalid-character\n1:22+1 invalid-character\n");
 }
 
 TEST_CASE("names may be in any script [unit]") {
