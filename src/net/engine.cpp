@@ -64,6 +64,25 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
     for (const DelayTable& d : n.delays) {
         delay_keys_.push_back(stream_key(seed, n.transitions.path(d.transition), "delay"));
     }
+    if (options.free && !random_) {
+        std::vector<bool> set(n.data.size(), false);
+        for (std::uint32_t e = 0; e < n.events.size(); ++e) {
+            const EventDraft& event = n.declarations.events[e];
+            if (event.sets.valid()) {
+                set[event.sets.value] = true;
+            }
+            if (event.outside) {
+                outside_events_.push_back(e);
+            }
+        }
+        std::sort(outside_events_.begin(), outside_events_.end(),
+                  [&](auto a, auto b) { return n.events.rank(a) < n.events.rank(b); });
+        for (std::uint32_t d = 0; d < n.data.size(); ++d) {
+            if (n.declarations.data[d].sensor && !set[d]) {
+                free_sensors_.push_back(d);
+            }
+        }
+    }
     std::uint32_t variables = 0;
     for (std::uint32_t s = 0; s < n.specials.size(); ++s) {
         const Special& special = n.specials[s];
@@ -751,6 +770,9 @@ Engine::Outcome Engine::run(std::int64_t until, std::uint64_t firings) {
                 continue;
             }
             next = std::min(next, state_.occurrences.front().at);
+        }
+        if (options_.free && ask_outside()) {
+            continue;
         }
         if (next == SimTime::never().ticks) {
             return Outcome::kDead;

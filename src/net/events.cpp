@@ -81,6 +81,48 @@ void Engine::offer_first() {
     look_again(false);
 }
 
+// Free runs: the instant has settled; does the outside do something before time passes? True: it
+// did. Sensors are asked once per settled marking, events again after each that occurs.
+bool Engine::ask_outside() {
+    if (random_ || (state_.asked_at == state_.now && state_.asked_firings == state_.firings)) {
+        return false;
+    }
+    Choice choice;
+    if (state_.free_events < options_.free_events && !outside_events_.empty()) {
+        choice.kind = ChoiceKind::kEvent;
+        choice.element = kNoIndex;
+        choice.options = static_cast<std::uint32_t>(outside_events_.size()) + 1;
+        const std::int64_t answer = chooser_->choose(choice);
+        PUP_REQUIRE(answer >= 0 && answer < choice.options);
+        if (answer > 0) {
+            ++state_.free_events;
+            occur({outside_events_[static_cast<std::size_t>(answer) - 1]}, {state_.now});
+            return true;
+        }
+    }
+    state_.asked_at = state_.now;
+    state_.asked_firings = state_.firings;
+    bool changed = false;
+    for (const std::uint32_t d : free_sensors_) {
+        choice.kind = ChoiceKind::kFreeGuard;
+        choice.element = d;
+        choice.options = 2;
+        const std::int64_t answer = chooser_->choose(choice);
+        PUP_REQUIRE(answer == 0 || answer == 1);
+        if (state_.data[d] != answer) {
+            state_.data[d] = answer;
+            changed = true;
+            for (const std::uint32_t t : tables_->datum_dependents.row(d)) {
+                touch(t);
+            }
+        }
+    }
+    if (changed) {
+        look_again(false);
+    }
+    return changed;
+}
+
 // A transition fires with the occurrence that is offered.
 void Engine::use_offer(const Special& s) {
     state_.offer_used = true;

@@ -219,6 +219,8 @@ void canonical(const Net& net, const State& s, std::vector<std::uint8_t>& out) {
         w.count(t);
     }
     w.number(std::max<std::int64_t>(0, s.next_beat - s.now));
+    w.count(s.free_events);
+    w.byte(s.asked_at == s.now && s.asked_firings == s.firings ? 1 : 0);
 }
 
 std::uint64_t hash(const Net& net, const State& state) {

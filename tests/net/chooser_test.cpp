@@ -69,6 +69,49 @@ TEST_CASE("exhaustive: an interval is taken at evenly spread points, both ends i
     }
 }
 
+TEST_CASE(
+    "free runs: the chooser says which outside events occur, and what free sensors see [unit]") {
+    Maker m;
+    m.event("b");
+    m.event("a");
+    m.draft.events[0].outside = true;
+    const EventIndex inner = m.event("inner");
+    m.draft.events[2].outside = false;
+    (void)inner;
+    m.place("p", 1);
+    m.place("q", 1);
+    m.place("clock", 1, lasts(1));
+    m.t("on_a", {"p"}, {}).events = {{1}};
+    m.t("on_b", {"p"}, {}).events = {{0}};
+    const DatumIndex near = m.datum("near", {ValueKind::kBool, 0}, 0);
+    m.draft.data[0].sensor = true;
+    m.t("seen", {"q", "clock"}, {}).guard = m.read(near);
+    m.t("tick", {"clock", "unless q"}, {});
+    const Net net = m.net();
+    EngineOptions options;
+    options.free = true;
+    options.free_events = 1;
+    ExhaustiveChooser all;
+    std::set<std::string> seen;
+    do {
+        Run run(net, &all, options);
+        run.until(10);
+        seen.insert(run.log.text);
+    } while (all.next());
+    // Nothing, a or b, now or when the clock rings, before or after the sensor sees; ties included.
+    CHECK(seen.count("") == 1);
+    CHECK(seen.count("0:on_a 1:seen") == 1);
+    CHECK(seen.count("1:seen 1:on_b") == 1);
+    CHECK(seen.count("1:on_a 1:seen") == 1);
+    CHECK(seen.count("1:seen") == 1);
+    CHECK(seen.count("0:on_b") == 1);
+    for (const std::string& text : seen) {
+        const bool both =
+            text.find("on_a") != std::string::npos && text.find("on_b") != std::string::npos;
+        CHECK_FALSE(both);  // one event at most
+    }
+}
+
 TEST_CASE("scripted: what was recorded replays to the same log and the same state [law]") {
     const Net net = philosophers(5);
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {

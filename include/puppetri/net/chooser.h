@@ -19,8 +19,9 @@ enum class ChoiceKind : std::uint8_t {
     kDelay,      // how long a delay with a distribution lasts
     kInterval,   // a duration or delay in [low, high]
     kToken,      // which of `options` tokens (in order of serial) of an `any` place
-    kEvent,      // free runs: nothing (0), or outside event number i - 1 occurs now
-    kFreeGuard,  // free runs: the sensor `element` becomes false (0) or true (1)
+    kEvent,      // free runs: nothing more here (0), or outside event number i - 1 occurs now
+    kFreeGuard,  // free runs: the sensor `element`, which no event sets, is now false (0) or true
+                 // (1)
 };
 
 struct Choice {

@@ -35,6 +35,11 @@ struct EngineOptions {
     EngineListener* listener = nullptr;
     std::int64_t beat = kTicksPerSecond;  // of paced nets
     std::uint32_t firings_per_instant = 100'000;
+    // Free runs, for those who explore: whenever an instant has settled, the chooser is asked
+    // whether an outside event occurs (so many at most in the whole run) and what the sensors say
+    // that no event sets. Not with RandomChooser.
+    bool free = false;
+    std::uint32_t free_events = 0;
 };
 
 class Engine final : private Code::Reader {
@@ -159,6 +164,7 @@ class Engine final : private Code::Reader {
     void push_occurrence(Occurrence o);
     bool occurrence_pending_now() const;
     void use_offer(const Special& s);
+    bool ask_outside();
     void forget_activity(std::uint32_t activity);
 
     // binding.cpp
@@ -220,7 +226,8 @@ class Engine final : private Code::Reader {
     std::vector<double> last_odds_;      // per special: of its ticket
     std::vector<std::uint8_t> touched_;  // per special
     std::vector<std::uint32_t> touch_list_;
-    std::vector<std::uint32_t> resampled_;  // specials with memory `resample`
+    std::vector<std::uint32_t> outside_events_, free_sensors_;  // of free runs
+    std::vector<std::uint32_t> resampled_;                      // specials with memory `resample`
     std::vector<Value> variables_;
     std::vector<std::uint32_t>
         bound_;  // per variable: 0, or 1 + how many tokens were chosen when it was bound

@@ -40,7 +40,8 @@ struct Weighted {
 
 // A transition that waits for a count: at least `threshold`, or (inhibits) fewer.
 struct Watcher {
-    std::uint32_t word = 0;  // the transition; the uppermost bits: inhibits, and (of the transition) gated
+    std::uint32_t word =
+        0;  // the transition; the uppermost bits: inhibits, and (of the transition) gated
     std::uint32_t threshold = 1;
     static constexpr std::uint32_t kInhibits = 1u << 31, kGated = 1u << 30;
     std::uint32_t transition() const { return word & (kGated - 1); }

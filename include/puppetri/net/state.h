@@ -110,17 +110,18 @@ struct Ticket {
     std::uint32_t stamp = 0;  // of the engine
 };
 
-// The race of one priority. Those who entered together when nobody was waiting are sorted by their uniform numbers,
-// greatest first, in `run`: of equal odds that is the order of their tickets -ln(u), and most logarithms are never
-// needed. Who comes later gets its ticket, counted from the clock, in the heap.
+// The race of one priority. Those who entered together when nobody was waiting are sorted by their
+// uniform numbers, greatest first, in `run`: of equal odds that is the order of their tickets
+// -ln(u), and most logarithms are never needed. Who comes later gets its ticket, counted from the
+// clock, in the heap.
 struct Lottery {
     std::vector<Ticket> run;      // keys are -u; from `head`; may hold stale ones
     std::vector<Ticket> tickets;  // a heap, least key first; may hold stale ones
     std::uint32_t head = 0;
-    bool lazy = false;            // the clock is -ln(last_u), not computed yet
+    bool lazy = false;  // the clock is -ln(last_u), not computed yet
     double last_u = 1;
     double clock = 0;
-    double front_key = -1;        // the ticket of the run's first, once computed
+    double front_key = -1;  // the ticket of the run's first, once computed
 };
 
 struct State {
@@ -142,6 +143,11 @@ struct State {
     std::vector<std::vector<Clock>> clocks;  // one list per delay
     std::vector<Occurrence> occurrences;     // a heap
 
+    // Of free runs: outside events so far, and where the outside was asked last.
+    std::uint32_t free_events = 0;
+    std::int64_t asked_at = -1;
+    std::uint64_t asked_firings = 0;
+
     // The occurrence that is being offered.
     std::uint32_t offered = ~std::uint32_t{0};
     bool offer_used = false;
@@ -149,7 +155,8 @@ struct State {
     std::vector<std::uint32_t> offer_users;  // transitions that have fired with it
 
     std::vector<Lottery> lotteries;  // one per priority
-    // How many numbers each stream has given; those of tickets are kept by the engine and filled in by save().
+    // How many numbers each stream has given; those of tickets are kept by the engine and filled in
+    // by save().
     std::vector<std::uint64_t> ticket_draws, duration_draws, delay_draws, token_draws;
 };
 
