@@ -317,7 +317,10 @@ class Lowering {
             busy.duration = std::move(begin.holding);
             begin.holding.reset();
             begin.path += ".begin";
-            const PlaceIndex place{static_cast<std::uint32_t>(net().places.size())};
+            const bool declared = begin.busy.valid() && begin.end.valid();
+            const PlaceIndex place =
+                declared ? begin.busy : PlaceIndex{static_cast<std::uint32_t>(net().places.size())};
+            const TransitionIndex last = begin.end;
             OutputDraft into;
             into.place = place;
             into.where = begin.where;
@@ -343,6 +346,11 @@ class Lowering {
             });
             begin.outputs.push_back(std::move(into));
             end.inputs.push_back(std::move(out_of));
+            if (declared) {
+                net().places[place.value] = std::move(busy);
+                net().transitions[last.value] = std::move(end);
+                continue;
+            }
             net().places.push_back(std::move(busy));
             net().transitions.push_back(std::move(end));
         }

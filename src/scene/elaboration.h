@@ -152,6 +152,7 @@ class Elaboration {
     void expand(std::uint32_t instance);
     void expand_body(const lang::Body& body, const Scope& scope);
     void unroll(const lang::For& loop, const Scope& scope);
+    void declare_holding(std::uint32_t transition);
     void instantiate();
     std::uint32_t enumeration_index(const lang::Enumeration& e);
     void match_arguments(Instance& instance, const std::vector<lang::Argument>& arguments);

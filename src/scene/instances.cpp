@@ -227,6 +227,9 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
         draft().transitions.push_back(
             {.path = path, .caption = t.caption.text, .where = at(t.span)});
         transitions_.push_back({&t, scope, path});
+        if (t.holding) {
+            declare_holding(index);
+        }
     }
     for (const lang::State& s : body.states) {
         const std::string path = path_of(s.name, scope);
@@ -323,6 +326,25 @@ void Elaboration::unroll(const lang::For& loop, const Scope& scope) {
         }
         once(std::move(value), lang::to_text(*item));
     }
+}
+
+// `for d` makes t.begin -> t.busy -> t.end: the last two get their entries now, so that they can be
+// named; lower() fills them.
+void Elaboration::declare_holding(std::uint32_t index) {
+    static const lang::Place kBusy{};
+    static const lang::Transition kEnd{};
+    const Scope scope = transitions_[index].scope;
+    const std::string path = transitions_[index].path;
+    const SourceSpan where = draft().transitions[index].where;
+    draft().transitions[index].busy = {static_cast<std::uint32_t>(draft().places.size())};
+    draft().transitions[index].end = {static_cast<std::uint32_t>(draft().transitions.size())};
+    draft().places.push_back({.path = path + ".busy", .where = where});
+    PlaceElement& busy = places_.emplace_back();
+    busy.node = &kBusy;
+    busy.scope = scope;
+    busy.path = path + ".busy";
+    draft().transitions.push_back({.path = path + ".end", .where = where});
+    transitions_.push_back({&kEnd, scope, path + ".end"});
 }
 
 std::uint32_t Elaboration::enumeration_index(const lang::Enumeration& e) {

@@ -206,6 +206,22 @@ Term Elaboration::resolve_next(const Term& before, const lang::Name& name, const
                 {"holder"});
         return Nothing{};
     }
+    if (const auto* transition = std::get_if<TransitionTerm>(&before)) {
+        const net::TransitionDraft& t = draft().transitions[transition->transition.value];
+        if (t.busy.valid() && name.text == "begin") {
+            return before;
+        }
+        if (t.busy.valid() && name.text == "busy") {
+            return PlaceTerm{t.busy};
+        }
+        if (t.busy.valid() && name.text == "end") {
+            return TransitionTerm{t.end};
+        }
+        error("no-member", name.span, t.path + " has no " + name.text,
+              "a transition with a holding time (`for 2 s`) has begin, busy and end, others have "
+              "nothing inside");
+        return Nothing{};
+    }
     error("no-member", name.span, describe(before) + " has no " + name.text,
           "remove ." + name.text);
     return Nothing{};

@@ -290,4 +290,25 @@ TEST_CASE("the order of declarations changes no log [law]") {
     CHECK(first->log_hash == second->log_hash);
 }
 
+TEST_CASE("the place and the end of a holding time can be named like others [unit]") {
+    const Scene scene = from_text(
+        "place p takes 1 s tokens 1\nplace q\nplace r tokens 1\nplace seen\nt: p -> q for 2 s\n"
+        "u: r -> seen while t.busy\nrule a never (t.busy and q)\nrule b t.end only if t.busy\nrule "
+        "c t.begin only if p");
+    const net::PlaceIndex busy = scene.net.find_place("t.busy");
+    REQUIRE(busy.valid());
+    run::Player player(scene.net);
+    player.advance_to(SimTime{2 * kTicksPerSecond});
+    CHECK(player.tokens(busy) == 1);
+    CHECK(player.tokens(scene.net.find_place("seen")) == 1);
+    player.advance_to(SimTime{3 * kTicksPerSecond});
+    CHECK(player.tokens(busy) == 0);
+    CHECK(player.tokens(scene.net.find_place("q")) == 1);
+    CHECK(rule(scene, "a").operands.size() == 1);
+    CHECK(rule(scene, "b").operands[0].nodes[0].op == net::FormulaOp::kFires);
+    const Diagnostics list =
+        defects_of("place p tokens 1\nt: p -> p after 1 s\nrule a never t.busy");
+    CHECK(list.at(0).code == "no-member");
+}
+
 }  // namespace puppetri::scene

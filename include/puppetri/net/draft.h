@@ -156,6 +156,10 @@ struct TransitionDraft {
     std::optional<DelayDraft> delay;
     std::optional<DurationDraft>
         holding;  // `for d`: lowered to t.begin -> t.busy -> t.end by lower()
+    // With a holding time: an empty place t.busy and an empty transition t.end of the draft that
+    // lower() fills, for those who speak of them; invalid: it makes its own.
+    PlaceIndex busy;
+    TransitionIndex end;
     std::vector<AssignmentDraft> assignments;
 };
 
