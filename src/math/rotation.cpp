@@ -36,7 +36,8 @@ Quat from_rotation_vector(Vec3 v) {
 
 Quat normalized(Quat q) {
     const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    return n > 0 ? Quat{q.x / n, q.y / n, q.z / n, q.w / n} : Quat{};
+    const double k = n > 0 ? 1 / n : 0;
+    return n > 0 ? Quat{q.x * k, q.y * k, q.z * k, q.w * k} : Quat{};
 }
 
 double angle_of(Quat q) { return 2 * puppetri::atan2(length({q.x, q.y, q.z}), std::fabs(q.w)); }
@@ -88,8 +89,11 @@ SwingTwist to_swing_twist(Quat q, Vec3 axis) {
     if (along * along + q.w * q.w < 1e-18) {
         return {q, 0};
     }
-    const double twist = 2 * puppetri::atan2(along, q.w);
-    return {normalized(q * from_axis_angle(axis, -twist)), twist};
+    // The twist's quaternion is the part of q along the axis; no angle is needed to take it out.
+    const double k = 1 / std::sqrt(along * along + q.w * q.w);
+    const double sine = along * k, cosine = q.w * k;
+    const Quat untwist{-axis.x * sine, -axis.y * sine, -axis.z * sine, cosine};
+    return {normalized(q * untwist), 2 * puppetri::atan2(along, q.w)};
 }
 
 double heading_of(Vec3 direction) { return puppetri::atan2(direction.x, direction.z); }
