@@ -30,7 +30,8 @@ constexpr double kSetDown_m = 1.6;  // the same upward, in m
 // Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
 // off (20), and the shortest of a leg that stands (24.4).
 constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9788;
-constexpr double kSlips = 0.9981;  // from here on a standing foot would leave its print
+constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down
+constexpr double kSlips = 0.9981;        // from here on a standing foot would leave its print
 
 class Planner {
  public:
@@ -49,7 +50,7 @@ class Planner {
         first_ = spec.kind == StepKind::kFirstHalf;
         last_ = spec.kind == StepKind::kLastHalf;
         n_ = whole_ ? plan_.duration_s : 2 * plan_.duration_s;
-        x_ = spec.stroke_m;
+        x_ = std::fmin(spec.stroke_m, kLongestStroke * f_.leg_m);
         // Long steps for the legs turn the pelvis more.
         yaw_ = clamp(radians(10) * x_ / f_.leg_m, radians(3), radians(10));
         side_ = support_side_ == Side::kLeft ? 1 : -1;

@@ -17,6 +17,7 @@ namespace {
 constexpr double kGravity = 9.81;
 constexpr double kLandingReach = 0.985,
                  kPushOffReach = 0.988;           // of the leg: knee 20 and 18 degrees
+constexpr double kLongestStance = 0.84;           // of the leg, from landing to push off
 constexpr double kKick = radians(-68);            // of the foot behind the body
 constexpr double kBrake = 5.0, kSetDown_m = 1.2;  // as for walking
 // The swing's course from toe off to touch down: parts of its time, and how high the ankle then is
@@ -37,12 +38,15 @@ class RunPlanner {
         first_ = spec.kind == StepKind::kFirstHalf;
         last_ = spec.kind == StepKind::kLastHalf;
         n_ = spec.kind == StepKind::kWhole ? T_ : 2 * T_;
-        x_ = spec.stroke_m;
+        // While a foot stands the body travels by twice the duty factor times the stroke: as far as
+        // a leg reaches.
+        const double duty = clamp(spec.duty_factor, 0.2, 0.5);
+        x_ = std::fmin(spec.stroke_m, kLongestStance * f_.leg_m / (2 * duty));
         speed_ = x_ / n_;
         lead_ = std::fmin(
             0.1, 0.11 * x_);  // runners land nearly under themselves and push off far behind
-        flight_ = (0.5 - clamp(spec.duty_factor, 0.2, 0.5)) * n_;  // half of it
-        swing_s_ = 2 * n_ * (1 - clamp(spec.duty_factor, 0.2, 0.5));
+        flight_ = (0.5 - duty) * n_;  // half of it
+        swing_s_ = 2 * n_ * (1 - duty);
         side_ = support_side_ == Side::kLeft ? 1 : -1;
     }
 

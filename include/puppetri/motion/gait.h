@@ -29,11 +29,13 @@ struct StepSpec {
 // it (n becomes the prescribed length, or twice it for a half step).
 double step_duration_s(const StepSpec& spec);
 
-// A step. It goes where the feet point, along the line midway between them. It begins with the
-// state of the context whatever that is (feet in the air land first where they are headed); the
-// pelvis is at most 0.1 m off the formula. Events  "foot_off" and "foot_strike" of the legs.
-// Phases: support and swing of both legs. Needs   stroke_m >= 0, duration_s > 0. Cost    tens of
-// microseconds to prepare; a sample allocates nothing.
+// A step. It goes where the feet point, along the line midway between them, and begins with the
+// state of the context whatever that is: feet in the air land first where they are headed.
+// Events  "foot_off" and "foot_strike" of the legs. Phases: support and swing of both legs.
+// Needs   stroke_m >= 0, duration_s > 0.
+// Gives   a pelvis at most 0.1 m off the formula, and feet that never slide: a stroke beyond what
+//         this figure's legs can do (0.87 of the leg, 43 % of the height, in a walk) is shortened.
+// Cost    a third of a millisecond to prepare; a sample allocates nothing.
 MovementPtr make_step(const MotionContext& context, const StepSpec& spec);
 
 // The four single-limb movements of a step, to be run side by side from the same context: together

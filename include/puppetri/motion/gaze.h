@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Where a figure looks: the head turns to a point of the world as far as neck and head allow, the
-// chest follows a little.
+// Where a figure looks, and where its chest and hands are, as its controls say.
 #pragma once
 #include "puppetri/motion/context.h"
 
 namespace puppetri::motion {
 
 // The rotation chest_from_head that makes the eyes look at the target, no further than the neck
-// turns: 70 degrees to the side, 40 up and down, never past it behind the back (the head then stays
-// at the nearer limit).
+// turns: 70 degrees to the side, 40 up and down. A target behind the back is not looked at: from
+// 110 degrees on the head turns back ahead, without a jump.
 Quat gaze_at(const figure::Figure& figure, const Controls& controls, Vec3 target_world);
 
 // World transform of the joint upperChest and of a hand as the controls ask for it (no limits

@@ -7,10 +7,9 @@
 
 namespace puppetri::motion {
 
-// A figure at rest at a place on the floor: feet side by side under it, arms hanging, looking
-// ahead. Spaces  position_world: the point midway between the ankles, on the floor (y is the
-// floor's height); heading as in
-//         math/rotation.h.
+// A figure at rest at a place on the floor: feet side by side, arms hanging, looking ahead.
+// Spaces  position_world is the point midway between the ankles, on the floor (y is the floor's
+//         height); heading as in math/rotation.h.
 Controls standing(const figure::Figure& figure, Vec3 position_world, double heading_rad);
 
 // The arm that hangs at the side, and where the pelvis of a standing figure is above two given

@@ -2,8 +2,8 @@
 // Inertialization: the new movement plays at once, and the difference to where the limb really is,
 // and how fast, fades out by a polynomial. Unlike cross-fading it never asks the old movement
 // again. Source  Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War",
-// GDC 2018; the quintic of
-//         that talk, with rotations as rotation vectors.
+// GDC
+//         2018; the quintic of that talk, with rotations as rotation vectors.
 #pragma once
 #include "puppetri/motion/context.h"
 
@@ -21,7 +21,7 @@ class InertialOffset {
     double x0_ = 0, v0_ = 0, a0_ = 0, a_ = 0, b_ = 0, c_ = 0, end_s_ = 0;
 };
 
-// Of a vector: along the direction of the offset, after Bollo; the rate across it fades by itself.
+// Of a vector, component by component.
 class InertialOffset3 {
  public:
     InertialOffset3() = default;

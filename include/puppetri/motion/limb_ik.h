@@ -8,16 +8,14 @@
 namespace puppetri::motion {
 
 // Spaces  start, goal and reference direction in the space of the limb's parent (the clavicle's for
-// an arm). At the zero
-//         pose the limb lies straight along `axis` (unit) with all rotations the identity and bends
-//         about `hinge` (unit, orthogonal to axis) with positive angles.
+//         an arm). At the zero pose the limb lies straight along `axis` (unit) with all rotations
+//         the identity and bends about `hinge` (unit, orthogonal to axis) with positive angles.
 // Gives   rotations relative to their parents. The hinge angle is >= 0. The circle of the middle
-// joint starts at the
-//         projection of `swivel_zero`; swivel turns about the axis from start to goal.
+//         joint starts at the projection of `swivel_zero`; swivel turns about the axis from start
+//         to goal.
 // Cost    O(1), no allocation.
 // Source  Tolani, Goswami and Badler, "Real-time inverse kinematics techniques for anthropomorphic
-// limbs", Graphical
-//         Models 62 (2000) 353-388, sections 2 and 3.
+//         limbs", Graphical Models 62 (2000) 353-388, sections 2 and 3.
 struct LimbIk {
     Vec3 start;
     Transform goal;  // of the end joint

@@ -12,9 +12,12 @@ struct TurnSpec {
     LimbSet limbs = kAllLimbs;
 };
 
-// Turns to the heading, the shorter way round, and ends standing with the feet side by side around
-// the same point on the floor. Angles above 90 degrees take two pairs of steps, above 180 cannot
-// occur. Angles below 3 degrees move no foot. Events "foot_off" and "foot_strike".
+// Turns to the heading, the shorter way round, and ends standing with the feet side by side. One
+// pair of steps turns by up to 125 degrees; where there is time each pair turns by at most 100. The
+// feet end around a point some centimetres aside (so that they do not step on each other); turning
+// back cancels it. Angles below 3 degrees move no foot.
+// Events  "foot_off" and "foot_strike".
+// Gives   feet in the air (or rolling) are put down first.
 MovementPtr make_turn(const MotionContext& context, const TurnSpec& spec);
 
 // How long a turn by this angle takes at ease.
