@@ -15,6 +15,18 @@ namespace puppetri::net {
 namespace {
 constexpr std::int64_t kOpen = -1;
 constexpr std::size_t kMostInline = 16;
+
+// -1: beyond the end of time.
+std::int64_t exponential_ticks(double mean_s, std::uint64_t bits) {
+    const double seconds = -mean_s * puppetri::log(uniform_from_bits(bits));
+    const double exact = seconds * static_cast<double>(kTicksPerSecond);
+    constexpr double kRound =
+        0x1.8p52;  // adding and taking away rounds to a whole number, ties to even
+    if (exact < 0x1p51) {
+        return static_cast<std::int64_t>((exact + kRound) - kRound);
+    }
+    return exact < 9.2e18 ? static_cast<std::int64_t>(std::nearbyint(exact)) : -1;
+}
 }  // namespace
 
 Value Engine::read(std::uint32_t kind, std::uint32_t index) const {
@@ -39,18 +51,19 @@ bool Engine::evaluate(ProgramIndex program, Value& out) {
     return e.fault == EvalFault::kNone;
 }
 
-// The inverse of the distribution function; false: beyond the end of time.
-bool Engine::draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& count,
+bool Engine::draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& count, Ahead& ahead,
                               std::int64_t& ticks) {
-    const double seconds = -mean_s * puppetri::log(uniform_from_bits(random_bits(key, count++)));
-    const double exact = seconds * static_cast<double>(kTicksPerSecond);
-    constexpr double kRound =
-        0x1.8p52;  // adding and taking away rounds to a whole number, ties to even
-    if (exact < 0x1p51) {
-        ticks = static_cast<std::int64_t>((exact + kRound) - kRound);
-        return true;
+    if (ahead.at == ahead.size || ahead.count != count) {
+        // Few at first: many streams are asked only once or twice.
+        const std::uint32_t more = ahead.size == 0 ? 1 : 2 * ahead.size;
+        ahead.size = ahead.count != count ? 1 : std::min(more, Ahead::kMost);
+        ahead.at = 0;
+        for (std::uint32_t i = 0; i < ahead.size; ++i) {
+            ahead.ticks[i] = exponential_ticks(mean_s, random_bits(key, count + i));
+        }
     }
-    ticks = exact < 9.2e18 ? static_cast<std::int64_t>(std::nearbyint(exact)) : -1;
+    ticks = ahead.ticks[ahead.at++];
+    ahead.count = ++count;
     return ticks >= 0;
 }
 
@@ -86,11 +99,13 @@ bool Engine::draw_place(std::uint32_t p, std::int64_t& ticks) {
     std::uint64_t none = 0;
     const bool streams = d.stream != kNoIndex;
     return draw(d, streams ? duration_keys_[d.stream] : 0,
-                streams ? state_.duration_draws[d.stream] : none, ChoiceKind::kDuration, p, ticks);
+                streams ? state_.duration_draws[d.stream] : none,
+                streams ? duration_ahead_[d.stream] : kNoIndex, ChoiceKind::kDuration, p, ticks);
 }
 
-bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& count, ChoiceKind kind,
-                  std::uint32_t element, std::int64_t& ticks) {
+bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& count,
+                  std::uint32_t ahead, ChoiceKind kind, std::uint32_t element,
+                  std::int64_t& ticks) {
     const auto wrong = [&](const char* what) {
         const bool place = kind == ChoiceKind::kDuration;
         if (place) {
@@ -104,9 +119,8 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
         ticks = d.ticks;
         return true;
     }
-    if (random_ && d.constants.size() == 1 && d.distribution == DistributionKind::kExponential &&
-        d.kind == DurationKind::kDistribution) {
-        return draw_exponential(d.constants[0], key, count, ticks) ||
+    if (random_ && ahead != kNoIndex) {
+        return draw_exponential(d.constants[0], key, count, ahead_[ahead], ticks) ||
                wrong("a drawn duration goes beyond the end of time");
     }
     if (d.kind == DurationKind::kExpression) {

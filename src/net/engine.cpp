@@ -20,7 +20,7 @@ constexpr std::size_t kManyTickets =
     1024;  // from here on the tables are no longer in the nearest cache
 constexpr std::uint32_t kFresh = 1, kRaced = 2, kStatus = 3;
 
-bool earlier(const Pending& a, const Pending& b) { return a.at < b.at; }
+constexpr auto earlier = [](const Pending& a, const Pending& b) { return a.at < b.at; };
 
 }  // namespace
 
@@ -55,14 +55,24 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
         hot_[t].flags = row.flags;
         hot_[t].ticket_key = random_ ? stream_key(seed, n.transitions.path(t), "ticket") : 0;
     }
+    const auto ahead = [this](const DurationTable& d) {
+        if (d.kind != DurationKind::kDistribution || d.constants.size() != 1 ||
+            d.distribution != DistributionKind::kExponential) {
+            return kNoIndex;
+        }
+        ahead_.emplace_back();
+        return static_cast<std::uint32_t>(ahead_.size()) - 1;
+    };
     for (const std::uint32_t p : n.stream_place) {
         duration_keys_.push_back(stream_key(seed, n.places.path(p), "duration"));
+        duration_ahead_.push_back(ahead(n.durations[n.place[p].duration]));
     }
     for (const std::uint32_t p : n.token_stream_place) {
         token_keys_.push_back(stream_key(seed, n.places.path(p), "token"));
     }
     for (const DelayTable& d : n.delays) {
         delay_keys_.push_back(stream_key(seed, n.transitions.path(d.transition), "delay"));
+        delay_ahead_.push_back(ahead(d.duration));
     }
     if (options.free && !random_) {
         std::vector<bool> set(n.data.size(), false);

@@ -196,7 +196,7 @@ void Engine::look_at_delay(std::uint32_t t, std::uint32_t number, std::uint32_t 
     if (state_.clocks[delay].empty()) {
         std::int64_t ticks = 0;
         if (!draw(tables_->delays[delay].duration, delay_keys_[delay], state_.delay_draws[delay],
-                  ChoiceKind::kDelay, t, ticks) ||
+                  delay_ahead_[delay], ChoiceKind::kDelay, t, ticks) ||
             !start_clock(delay, ticks)) {
             return;
         }
@@ -238,8 +238,8 @@ void Engine::set_clocks(std::uint32_t delay, std::uint32_t wanted) {
             if (s.searches) {
                 bind(s, false);
             }
-            if (!draw(d.duration, delay_keys_[delay], state_.delay_draws[delay], ChoiceKind::kDelay,
-                      d.transition, ticks)) {
+            if (!draw(d.duration, delay_keys_[delay], state_.delay_draws[delay],
+                      delay_ahead_[delay], ChoiceKind::kDelay, d.transition, ticks)) {
                 return;
             }
         }

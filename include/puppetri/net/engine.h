@@ -99,6 +99,15 @@ class Engine final : private Code::Reader {
         std::vector<Fresh> fresh;  // may hold stale ones
         std::uint32_t live_fresh = 0, live_raced = 0;
     };
+    // Draws of a stream that have been computed before they are asked for, several at a time: a
+    // draw is a function of its number alone, and several logarithms at once cost little more than
+    // one.
+    struct Ahead {
+        static constexpr std::uint32_t kMost = 8;
+        std::uint64_t count = 0;  // the number of the draw ticks[at]
+        std::uint32_t at = 0, size = 0;
+        std::int64_t ticks[kMost] = {};
+    };
     struct Chosen {  // a token that a binding takes or reads
         std::uint32_t rich, slot;
         ArcKind kind;
@@ -196,9 +205,10 @@ class Engine final : private Code::Reader {
     // durations.cpp
     // Ticks of a new token of place p; -1 for open; false: a fault.
     bool draw_place(std::uint32_t p, std::int64_t& ticks);
-    bool draw(const DurationTable& d, std::uint64_t key, std::uint64_t& count, ChoiceKind kind,
-              std::uint32_t element, std::int64_t& ticks);
-    bool draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& count,
+    // `ahead`: number in ahead_, of exponential durations with a constant mean.
+    bool draw(const DurationTable& d, std::uint64_t key, std::uint64_t& count, std::uint32_t ahead,
+              ChoiceKind kind, std::uint32_t element, std::int64_t& ticks);
+    bool draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& count, Ahead& ahead,
                           std::int64_t& ticks);
     bool evaluate(ProgramIndex program, Value& out);
 
@@ -222,6 +232,8 @@ class Engine final : private Code::Reader {
     std::vector<Hot> hot_;
     std::vector<Level> levels_;
     std::vector<std::uint64_t> duration_keys_, delay_keys_, token_keys_;
+    std::vector<std::uint32_t> duration_ahead_, delay_ahead_;  // numbers in ahead_
+    std::vector<Ahead> ahead_;
     std::vector<std::uint8_t> marked_;   // per special
     std::vector<double> last_odds_;      // per special: of its ticket
     std::vector<std::uint8_t> touched_;  // per special
