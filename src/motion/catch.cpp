@@ -8,11 +8,13 @@
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/turn.h"
+#include "swinging_arm.h"
 
 namespace puppetri::motion {
 namespace {
 
-constexpr double kOpen_m = 0.055;    // how far open hands are off the ball
+constexpr double kOpen_m = 0.055;  // how far open hands are off the ball
+constexpr double kFastHand_m_s = 2.0;
 constexpr double kMeet_s = 0.22;     // the last part of the way to the ball
 constexpr double kMeet_m = 0.07;     // how far the hands go to meet it
 constexpr double kGiveRatio = 0.28;  // the hands' speed at the catch, in parts of the ball's
@@ -64,12 +66,19 @@ class Readiness final : public Movement {
         rotation_ = waiting_rotation(figure_, then, catches_at_, radius_m_);
         chest_from_ball_ =
             inverse(world_from_chest(figure_, then)) * Transform{rotation_, catches_at_};
-        offsets_ = ArmOffsets::make(
-            context, [this](double t, Controls& out) { own(t, out); }, 0.95 * end_s_);
+        plan_arms(context);
     }
 
     void sample(double t_s, Controls& out) const override {
         own(t_s, out);
+        if (swings_) {
+            for (int i = 0; i < 2; ++i) {
+                const Transform swung = swing_[i].at(t_s);
+                Transform& hand = out.arms[i].chest_from_hand;
+                hand = {normalized(swung.rotation * conjugate(target_[i].rotation) * hand.rotation),
+                        hand.translation + swung.translation - target_[i].translation};
+            }
+        }
         offsets_.apply(t_s, out);
     }
 
@@ -77,6 +86,31 @@ class Readiness final : public Movement {
     void body(double t_s, Controls& out) const {
         base_->sample(t_s, out);
         accent_.apply(t_s, out);
+    }
+    // Hands that are fast, as after a throw, swing on about the shoulders; others come straight.
+    void plan_arms(const MotionContext& context) {
+        Controls end = context.now;
+        lay_hands(figure_, chest_from_ball_, radius_m_, kOpen_m, end);
+        for (int i = 0; i < 2; ++i) {
+            target_[i] = end.arms[i].chest_from_hand;
+            swings_ = swings_ || length(context.rate.arms[i].hand_velocity_chest) > kFastHand_m_s;
+        }
+        if (!swings_) {
+            offsets_ = ArmOffsets::make(
+                context, [this](double t, Controls& out) { own(t, out); }, 0.95 * end_s_);
+            return;
+        }
+        offsets_ = fading_fingers(context, end, 0.4);
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            const int i = index_of(side);
+            swing_[i] = SwingingArm({.shoulder = shoulder_chest(figure_, side),
+                                     .now = context.now.arms[i].chest_from_hand,
+                                     .velocity = context.rate.arms[i].hand_velocity_chest,
+                                     .angular = context.rate.arms[i].hand_angular_chest,
+                                     .target = target_[i],
+                                     .longest_m = figure_.arms[i].upper_m + figure_.arms[i].fore_m,
+                                     .duration_s = std::fmax(0.7, end_s_)});
+        }
     }
     // The open hands are first fixed to the chest, then more and more to the world.
     void own(double t_s, Controls& out) const {
@@ -96,6 +130,9 @@ class Readiness final : public Movement {
     Vec3 catches_at_;
     Quat rotation_;
     Transform chest_from_ball_;
+    bool swings_ = false;
+    std::array<SwingingArm, 2> swing_;
+    std::array<Transform, 2> target_;
     ArmOffsets offsets_;
 };
 

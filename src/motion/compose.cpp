@@ -51,9 +51,14 @@ class InTurn final : public Movement {
             starts_s_.push_back(duration.seconds());
             limbs.bits = static_cast<std::uint8_t>(limbs.bits | part->limbs.bits);
             for (PhaseSpan span : part->phases) {
-                span.begin = span.begin + duration;
-                span.end = span.end + duration;
-                phases.push_back(span);
+                if (part != parts_.back()) {  // the next part says how it goes on
+                    span.end = std::min(span.end, part->duration);
+                }
+                if (span.begin < span.end) {
+                    span.begin = span.begin + duration;
+                    span.end = span.end + duration;
+                    phases.push_back(span);
+                }
             }
             for (MovementEvent event : part->events) {
                 event.after_start = event.after_start + duration;

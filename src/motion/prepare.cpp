@@ -21,7 +21,7 @@ namespace {
 constexpr double kFastHand_m_s = 2.0;
 // How fast a figure turns at most to look at somebody, so that hips keep within 6 rad/s: 92 degrees
 // in half a second. In too short a time it turns as far as it gets, and chest and eyes do the rest.
-constexpr double kTurning_rad_s = 3.0;
+constexpr double kTurning_rad_s = 2.9;
 // A ball farther than this from where the hands would hold it is not caught.
 constexpr double kCatch_m = 0.02;
 

@@ -328,7 +328,7 @@ struct Stage::Data {
     SimTime begin_actor(std::uint32_t number, const motion::BoundCall& call, SimTime duration);
     SimTime begin_flight(std::uint32_t number, const motion::BoundCall& call, SimTime duration);
     void attend(ActorIndex thrower, const motion::BoundCall& call);
-    void receive(ActorIndex catcher, const motion::Flight& flight);
+    void receive(ActorIndex catcher, PropIndex prop, const motion::Flight& flight);
     bool planted(ActorIndex actor) const;
 };
 
@@ -501,7 +501,7 @@ SimTime Stage::Data::begin_flight(std::uint32_t number, const motion::BoundCall&
                                  .target = catcher != nullptr ? *catcher : ActorIndex{},
                                  .flight = flight});
     if (catcher != nullptr) {
-        receive(*catcher, flight);
+        receive(*catcher, prop, flight);
     }
     take.score[activity.row].prop = play.cast.props[prop.value].name;
     return duration.ticks >= 0 ? duration : flight.duration;
@@ -510,8 +510,7 @@ SimTime Stage::Data::begin_flight(std::uint32_t number, const motion::BoundCall&
 // Who waits for a ball turns to its holder as soon as that one turns to it or begins to throw:
 // since it got ready, the other may have walked on.
 void Stage::Data::attend(ActorIndex thrower, const motion::BoundCall& call) {
-    constexpr double kNearEnough_rad = 0.07;
-    constexpr SimTime kTakes{kTicksPerSecond / 2};
+    constexpr double kNearEnough_rad = 0.07, kMost_rad = 1.5, kTurning_rad_s = 2.2;
     const motion::ArgumentValue* to = call.find(call.movement == "throw" ? "to" : "toward");
     const ActorIndex* catcher = to != nullptr ? std::get_if<ActorIndex>(to) : nullptr;
     if (catcher == nullptr || *catcher == thrower || !planted(*catcher)) {
@@ -521,27 +520,32 @@ void Stage::Data::attend(ActorIndex thrower, const motion::BoundCall& call) {
     if (!wait.prop.valid() || held_by(thrower, now) != wait.prop) {
         return;
     }
-    const MotionContext context = context_of(*catcher, now, kTakes);
+    MotionContext context = context_of(*catcher, now, SimTime{-1});
     Controls other;
     take.actors[thrower.value].timeline.sample(now, other, true);
-    const double heading = motion::heading_to(context.now, other.pelvis.position_world);
     const double faces =
         heading_of(motion::pelvis_over_feet(context.figure, context.now).rotation_world);
-    if (std::fabs(turn_between(faces, heading)) < kNearEnough_rad) {
+    const double turn =
+        turn_between(faces, motion::heading_to(context.now, other.pelvis.position_world));
+    if (std::fabs(turn) < kNearEnough_rad) {
         return;
     }
+    const double by = clamp(turn, -kMost_rad, kMost_rad);  // the rest when the throw begins
     motion::Ready ready =
-        motion::make_ready(context, {.radius_m = take.radius(wait.prop), .heading_rad = heading});
+        motion::make_ready(context, {.radius_m = take.radius(wait.prop),
+                                     .heading_rad = faces + by,
+                                     .duration_s = std::fmax(0.5, std::fabs(by) / kTurning_rad_s)});
     wait.at_world = ready.catches_at_world;
     const std::uint32_t owner =
         take.actors[catcher->value].timeline.in_charge(Limb::kLeftArm, now).owner;
     take_limbs(*catcher, motion::kAllLimbs, std::move(ready.movement), owner);
 }
 
-// The hands of whoever waits go to where the ball will be, whatever movement it waits in, if it
-// stands and they are free.
-void Stage::Data::receive(ActorIndex catcher, const motion::Flight& flight) {
-    if (held_by(catcher, now).valid() || !planted(catcher)) {
+// The hands of whom the ball flies to go to where it will be, if they are free and it is ready or
+// stands.
+void Stage::Data::receive(ActorIndex catcher, PropIndex prop, const motion::Flight& flight) {
+    const bool waits = waiting[catcher.value].prop == prop;
+    if (held_by(catcher, now).valid() || (!waits && !planted(catcher))) {
         return;
     }
     const ActorTimeline& timeline = take.actors[catcher.value].timeline;
