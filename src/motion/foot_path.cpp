@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "living.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 
@@ -132,12 +133,16 @@ double drop_below_ankle(const figure::Figure& figure, Side side, double pitch_ra
     return -std::fmin(heel, std::fmin(ball, tip));
 }
 
-LegControl FootPath::at(double t_s) const {
+const FootPath::Segment& FootPath::segment_at(double t_s) const {
     std::size_t i = segments_.size() - 1;
     while (i > 0 && t_s < segments_[i].begin_s) {
         --i;
     }
-    const Segment& segment = segments_[i];
+    return segments_[i];
+}
+
+LegControl FootPath::at(double t_s) const {
+    const Segment& segment = segment_at(t_s);
     const double pitch = pitch_.at(t_s).position;
     LegControl leg;
     if (!segment.stands) {
@@ -189,11 +194,16 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
         landing.print = footprint_of(figure, side, now);
         landing.path.stand(0, landing.print);
         if (std::fabs(now.pitch.position) > 1e-9 || std::fabs(now.pitch.velocity) > 1e-9) {
-            // A foot that is flat but for a hair may leave at once.
-            const bool rolls =
-                std::fabs(now.pitch.position) > radians(1) || std::fabs(now.pitch.velocity) > 0.3;
-            landing.flat_s = rolls ? kRollFlat_s : 0;
-            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {kRollFlat_s, {}}));
+            // A heel that is up waits until the pelvis has come back over the foot: put down at
+            // once under a figure that still moves ahead, the ankle would have to bend too far.
+            // Such a foot, and one that is flat but for a hair, may leave at once.
+            const bool heel_up = now.pitch.position < -radians(1);
+            const bool rolls = now.pitch.position > radians(1) || now.pitch.velocity > 0.3;
+            const double roll_s =
+                kRollFlat_s +
+                (heel_up ? 0.45 * std::fmin(1, length(context.rate.pelvis_velocity_world)) : 0);
+            landing.flat_s = rolls && !heel_up ? kRollFlat_s : 0;
+            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {roll_s, {}}));
         }
         return landing;
     }
@@ -218,15 +228,29 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
 }
 
 // With the highest reach h and a margin w the height y becomes y - d^2 / (4 w) for d = y - (h - w)
-// in [0, 2 w], which joins y below and h above with a continuous slope.
-void keep_reach(const figure::Figure& figure, Controls& c) {
+// in [0, 2 w], which joins y below and h above with a continuous slope. Across the floor, beyond a
+// = 0.70 of the leg the distance d becomes a + b (1 - exp(-(d - a) / b)), never more than a + b =
+// 0.85 of the leg.
+void keep_reach(const figure::Figure& figure, std::array<bool, 2> stands, double since_start_s,
+                Controls& c) {
     constexpr double kReach = 0.9990;
-    for (int side = 0; side < 2; ++side) {
+    const double w = 1e-7 + 0.0009 * smooth_rise(since_start_s, 0.1);
+    for (std::size_t side = 0; side < 2; ++side) {
+        if (!stands[side]) {
+            continue;
+        }
         const Vec3 hip = rotate(c.pelvis.rotation_world, figure.legs[side].hip_pelvis);
-        const Vec3 d = c.pelvis.position_world + hip - c.legs[side].ankle_world;
-        const double r = kReach * figure.leg_m, w = 0.0009;
-        const double highest = c.legs[side].ankle_world.y - hip.y +
-                               std::sqrt(std::fmax(r * r - d.x * d.x - d.z * d.z, 0.04 * r * r));
+        Vec3 d = c.pelvis.position_world + hip - c.legs[side].ankle_world;
+        const double level = std::sqrt(d.x * d.x + d.z * d.z), a = 0.70 * figure.leg_m,
+                     b = 0.15 * figure.leg_m;
+        if (level > a) {
+            const double near = (a + b * (1 - puppetri::exp(-(level - a) / b))) / level;
+            c.pelvis.position_world = c.pelvis.position_world - Vec3{d.x, 0, d.z} * (1 - near);
+            d = {d.x * near, d.y, d.z * near};
+        }
+        const double r = kReach * figure.leg_m;
+        const double highest =
+            c.legs[side].ankle_world.y - hip.y + std::sqrt(r * r - d.x * d.x - d.z * d.z);
         const double over = c.pelvis.position_world.y - (highest - w);
         if (over > 0) {
             c.pelvis.position_world.y =

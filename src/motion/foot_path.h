@@ -3,6 +3,7 @@
 // is exact by construction: while the foot's pitch is positive (toes up) it turns about its heel,
 // while it is negative about the joint of the toes, which stay flat; both points are constants.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "puppetri/math/quintic.h"
@@ -48,6 +49,7 @@ class FootPath {
     void set_body(const figure::Figure& figure, Side side);
 
     LegControl at(double t_s) const;
+    bool stands_at(double t_s) const { return segment_at(t_s).stands; }
     const Curve1& pitch() const { return pitch_; }
 
  private:
@@ -59,6 +61,7 @@ class FootPath {
         Curve3 ankle_path;
         Curve1 yaw, toe_bend;
     };
+    const Segment& segment_at(double t_s) const;
     std::vector<Segment> segments_;
     Curve1 pitch_;
     Vec3 heel_foot_, toes_foot_;
@@ -80,9 +83,11 @@ struct Landing {
 };
 Landing put_down(const figure::Figure& figure, const MotionContext& context, Side side);
 
-// Lowers the pelvis where a leg would not reach its foot; smooth, and nothing where the legs reach
-// easily.
-void keep_reach(const figure::Figure& figure, Controls& controls);
+// Lowers the pelvis where a standing leg would not reach its foot, and draws it near where even
+// that does not help; smooth, and nothing where the legs reach easily. `stands`, by side, says
+// which feet are on the floor.
+void keep_reach(const figure::Figure& figure, std::array<bool, 2> stands, double since_start_s,
+                Controls& controls);
 
 // The height of the floor: that of the lower foot while it stands; 0 while the figure flies.
 double floor_under(const figure::Figure& figure, const MotionContext& context);

@@ -76,6 +76,7 @@ class Step final : public Movement {
                 lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
             living_.add(t_s - T, smooth_rise(t_s - T, 1.5), c);
         }
+        keep_reach(figure_, {plan_.feet[0].stands_at(t), plan_.feet[1].stands_at(t)}, t, c);
         copy_limbs(limbs, c, out);
     }
 

@@ -30,6 +30,7 @@ constexpr double kSetDown_m = 1.6;  // the same upward, in m
 // Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
 // off (20), and the shortest of a leg that stands (24.4).
 constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9788;
+constexpr double kCatch_s = 0.16;        // to put down a foot that should already stand
 constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down
 constexpr double kSlips = 0.9981;        // from here on a standing foot would leave its print
 
@@ -90,6 +91,15 @@ class Planner {
         plan_.strike_s = last_ ? T - shift : first_ ? T - half + shift : T - half_;
         plan_.support_strike_s = first_ ? -1 : -half_;
         plan_.support_lift_s = last_ ? T + 10 : T + half_;
+        if (!support_.planted) {
+            // After a step that was cut: this foot lands before the other leaves.
+            plan_.support_strike_s = kCatch_s;
+            plan_.lift_s = std::fmax(plan_.lift_s, kCatch_s + 0.02);
+            plan_.strike_s = std::fmax(plan_.strike_s, plan_.lift_s + 0.15);
+        }
+        if (!swing_.planted) {
+            plan_.lift_s = 0;
+        }
     }
 
     void plan_frame() {

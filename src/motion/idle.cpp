@@ -121,7 +121,7 @@ class Idle final : public Movement {
             c.legs[i].swivel_rad = swivel_[i].at(t_s);
             arms_[i].apply(t_s, c.arms[i]);
         }
-        keep_reach(figure_, c);
+        keep_reach(figure_, {feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
         copy_limbs(limbs, c, out);
     }
 

@@ -74,7 +74,7 @@ class Turn final : public Movement {
         if (t_s > T_) {
             living_.add(t_s - T_, smooth_rise(t_s - T_, 1.5), c);
         }
-        keep_reach(figure_, c);
+        keep_reach(figure_, {feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
         copy_limbs(limbs, c, out);
     }
 
@@ -171,21 +171,36 @@ class Turn final : public Movement {
 
     // From rest to rest with an acceleration at both ends: the peak velocity is 1.45 times the mean
     // (1.88 for least jerk).
-    static Curve1 quick(double begin_s, double a, double end_s, double b) {
+    static Curve1 quick(double begin_s, double a, double rate, double end_s, double b) {
         const double d = end_s - begin_s, push = 7 * (b - a) / (d * d);
-        return minimum_jerk({begin_s, {a, 0, push}}, {}, {end_s, {b, 0, -push}});
+        return minimum_jerk({begin_s, {a, rate, push}}, {}, {end_s, {b, 0, -push}});
     }
 
     void add_swing(const Swing& s) {
+        // It leaves from wherever it stands, also with its heel up, and comes down flat.
         FootPath& foot = feet_[index_of(s.side)];
-        const Vec3 from = foot.at(s.begin_s).ankle_world;
+        constexpr double h = 1e-4;
+        const LegControl from = foot.at(s.begin_s), later = foot.at(s.begin_s + h);
+        const Vec3 p = from.ankle_world, v = (later.ankle_world - p) * (1 / h);
+        const double bend = from.toe_bend_rad, bend_rate = (later.toe_bend_rad - bend) / h;
+        std::vector<Key1> pitch;
+        for (const Key1& key : foot.pitch().keys()) {
+            if (key.t_s < s.begin_s) {
+                pitch.push_back(key);
+            }
+        }
+        pitch.push_back({s.begin_s, foot.pitch().at(s.begin_s)});
+        pitch.push_back({s.end_s, {}});
         const double middle = (s.begin_s + s.end_s) / 2, top = s.to.y + kClearance_m;
         Curve3 ankle{
-            quick(s.begin_s, from.x, s.end_s, s.to.x),
-            minimum_jerk({s.begin_s, {from.y, 0, 0}}, {{middle, top}}, {s.end_s, {s.to.y, 0, 0}}),
-            quick(s.begin_s, from.z, s.end_s, s.to.z)};
-        foot.swing(s.begin_s, {}, std::move(ankle), quick(s.begin_s, s.yaw_from, s.end_s, s.yaw_to),
-                   Curve1());
+            quick(s.begin_s, p.x, v.x, s.end_s, s.to.x),
+            minimum_jerk({s.begin_s, {p.y, v.y, 0}}, {{middle, std::fmax(top, (p.y + s.to.y) / 2)}},
+                         {s.end_s, {s.to.y, 0, 0}}),
+            quick(s.begin_s, p.z, v.z, s.end_s, s.to.z)};
+        foot.set_pitch(Curve1(std::move(pitch)));
+        foot.swing(s.begin_s, {}, std::move(ankle),
+                   quick(s.begin_s, s.yaw_from, 0, s.end_s, s.yaw_to),
+                   minimum_jerk({s.begin_s, {bend, bend_rate, 0}}, {}, {s.end_s, {}}));
         foot.stand(s.end_s, footprint_at(figure_, s.side, s.to, s.yaw_to));
     }
 

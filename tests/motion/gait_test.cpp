@@ -4,9 +4,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <string>
 
 #include "chain.h"
 #include "draw.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/turn.h"
 
 using namespace puppetri;
 using namespace puppetri::motion;
@@ -338,5 +342,67 @@ TEST_CASE(
              chain.at(t - h).pelvis.position_world.y) /
             (h * h);
         CHECK(a == doctest::Approx(-9.81).epsilon(0.01));
+    }
+}
+
+TEST_CASE(
+    "steps, turns and stands in any order that feet allow, cut anywhere: nothing jumps, no foot "
+    "slides [law]") {
+    const figure::Figure f = figure::make_mannequin(1.75);
+    std::uint32_t state = 5;
+    auto next = [&](int n) {
+        return static_cast<int>((state = state * 1664525u + 1013904223u) >> 8) % n;
+    };
+    for (int trial = 0; trial < 80; ++trial) {
+        Chain chain(f, standing(f, {}, 0.5 * trial));
+        std::string story;
+        bool cut = false;
+        for (int k = 0; k < 8; ++k) {
+            const Controls now = chain.at(chain.now_s());
+            const Vec3 ahead = rotate(now.legs[0].foot_rotation_world, {0, 0, 1});
+            const double gap = dot(now.legs[0].ankle_world - now.legs[1].ankle_world, ahead);
+            const Side behind = std::fabs(gap) < 0.1 ? (next(2) == 0 ? Side::kLeft : Side::kRight)
+                                : gap > 0            ? Side::kRight
+                                                     : Side::kLeft;
+            const int what = cut ? 3 + next(2) : next(5);
+            double natural = 0.5;
+            MovementPtr movement;
+            if (what < 3) {
+                const StepKind kind = std::fabs(gap) < 0.1 ? StepKind::kFirstHalf
+                                      : next(2) == 0       ? StepKind::kWhole
+                                                           : StepKind::kLastHalf;
+                const StepSpec spec{.transfer = behind, .kind = kind};
+                movement = make_step(chain.context(), spec);
+                natural = step_duration_s(spec);
+                story += kind == StepKind::kFirstHalf ? "first"
+                         : kind == StepKind::kWhole   ? "whole"
+                                                      : "last";
+            } else if (what == 3) {
+                movement = make_turn(
+                    chain.context(),
+                    {.heading_rad = heading_of(now.pelvis.rotation_world) + 0.3 * (next(9) - 4),
+                     .duration_s = cut ? 1.0 : 0.5});
+                natural = cut ? 1 : 0.5;
+                story += "turn";
+            } else {
+                movement = make_idle(chain.context(), {});
+                natural = 0.8;
+                story += "idle";
+            }
+            cut = what < 3 && next(3) == 0;
+            const double part = cut ? 0.1 + 0.1 * next(9) : 1;
+            story += (behind == Side::kLeft ? "L" : "R") + std::to_string(part).substr(0, 4) + " ";
+            chain.run({std::move(movement)}, natural * part);
+        }
+        const Measures m = chain.measured(240);
+        CAPTURE(story);
+        INFO(report(m));
+        CHECK(m.slip_mm.value < 1);
+        CHECK(m.sink_mm.value < 2);
+        CHECK(m.hover_mm.value < 2);
+        CHECK(m.join_position_m.value < 1e-6);
+        CHECK(m.join_pelvis_m_s.value < 0.05);
+        CHECK(m.join_foot_m_s.value < 0.2);
+        CHECK(m.limit_excess_deg.value < 1e-4);
     }
 }
