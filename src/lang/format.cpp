@@ -67,6 +67,13 @@ class Formatter {
             start = brace;
         }
         add_comments(static_cast<std::uint32_t>(text.size()) + 1);
+        // A comment on a line of its own is indented like what comes behind it.
+        bool starts = true;
+        for (std::size_t i = pieces_.size(); i > 0; --i) {
+            Piece& piece = pieces_[i - 1];
+            piece.statement_start = piece.comment ? starts : piece.statement_start;
+            starts = piece.statement_start;
+        }
     }
 
     std::string run() {
@@ -108,8 +115,7 @@ class Formatter {
              ++i) {
             --depth;
         }
-        const bool continues =
-            pieces_[begin].comment ? in_statement(begin) : !pieces_[begin].statement_start;
+        const bool continues = !pieces_[begin].statement_start;
         line.indent = depth * kIndent + (continues ? kContinuation : 0);
         line.table = continues ? Kind::kEndOfFile : table_of(begin, end);
         line.cells.push_back({});
@@ -137,16 +143,6 @@ class Formatter {
             line.cells.back().text += " \\";
         }
         lines_.push_back(std::move(line));
-    }
-
-    // Whether a comment of its own line stands inside a statement that goes on.
-    bool in_statement(std::size_t i) const {
-        for (std::size_t next = i; next < pieces_.size(); ++next) {
-            if (!pieces_[next].comment) {
-                return !pieces_[next].statement_start;
-            }
-        }
-        return false;
     }
 
     void enter(std::size_t i) {
@@ -310,8 +306,10 @@ class Formatter {
         for (std::size_t i = begin; i < end; ++i) {
             const Kind kind = pieces_[i].kind;
             open += kind == Kind::kOpenBlock ? 1 : (kind == Kind::kCloseBlock ? -1 : 0);
-            statements +=
-                pieces_[i].statement_start && open == 0 && kind != Kind::kCloseBlock ? 1 : 0;
+            statements += pieces_[i].statement_start && !pieces_[i].comment && open == 0 &&
+                                  kind != Kind::kCloseBlock
+                              ? 1
+                              : 0;
             if (open < 0) {
                 return Kind::kEndOfFile;
             }
@@ -552,6 +550,7 @@ class Formatter {
 
     std::string print() {
         std::string out;
+        const std::vector<std::size_t> columns = comment_columns();
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             const Line& line = lines_[i];
             const std::string& body = line.cells[0].text;
@@ -560,7 +559,7 @@ class Formatter {
             out += body;
             if (!line.comment.empty()) {
                 if (!body.empty()) {
-                    out.append(comment_column(i) - line.indent - width(body), ' ');
+                    out.append(columns[i] - line.indent - width(body), ' ');
                 }
                 out += line.comment;
             }
@@ -571,22 +570,23 @@ class Formatter {
 
     // Comments at the ends of neighbouring lines stand below each other, two columns after the
     // longest.
-    std::size_t comment_column(std::size_t i) const {
-        const auto trails = [this](std::size_t k) {
-            return !lines_[k].comment.empty() && !lines_[k].cells[0].text.empty();
+    std::vector<std::size_t> comment_columns() const {
+        std::vector<std::size_t> columns(lines_.size(), 0);
+        const auto trails = [this](std::size_t i) {
+            return !lines_[i].comment.empty() && !lines_[i].cells[0].text.empty();
         };
-        const auto end_of = [this](std::size_t k) {
-            return lines_[k].indent + width(lines_[k].cells[0].text);
-        };
-        std::size_t widest = end_of(i);
-        for (std::size_t k = i; k > 0 && trails(k - 1) && !lines_[k].blank_before; --k) {
-            widest = std::max(widest, end_of(k - 1));
+        for (std::size_t begin = 0; begin < lines_.size();) {
+            std::size_t end = begin, widest = 0;
+            for (;
+                 end < lines_.size() && trails(end) && (end == begin || !lines_[end].blank_before);
+                 ++end) {
+                widest = std::max(widest, lines_[end].indent + width(lines_[end].cells[0].text));
+            }
+            std::fill(columns.begin() + static_cast<std::ptrdiff_t>(begin),
+                      columns.begin() + static_cast<std::ptrdiff_t>(end), widest + 2);
+            begin = std::max(end, begin + 1);
         }
-        for (std::size_t k = i + 1; k < lines_.size() && trails(k) && !lines_[k].blank_before;
-             ++k) {
-            widest = std::max(widest, end_of(k));
-        }
-        return widest + 2;
+        return columns;
     }
 
     struct State {

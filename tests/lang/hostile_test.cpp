@@ -100,3 +100,14 @@ TEST_CASE("noise is survived [hostile]") {
         survive(text);
     }
 }
+
+TEST_CASE("long runs of anything take time in proportion [hostile]") {
+    for (const char* unit : {"# c\n", "place a # c\n", "\n", "t: a -> b # c\n", "\\\n", "a ", "(",
+                             "x {\n", "cast { a: b {\n"}) {
+        std::string text;
+        while (text.size() < 400000) {
+            text += unit;
+        }
+        survive(text);
+    }
+}
