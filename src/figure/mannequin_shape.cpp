@@ -127,18 +127,18 @@ ImplicitShape mannequin_shape(const Landmarks& m) {
     add.paired = true;
     add.blob(shoulders + Vec3{0.072, -0.105, 0.058}, {0.082, 0.066, 0.046});  // chest
     add.limb(off(m.neck, 0, 0.040, -0.014), between(shoulders, m.shoulder[0], 0.75) + Vec3{0, 0.012, -0.012}, 0.042, 0.038);
-    add.blend = 0.035;
-    add.limb(off(m.hip[0], 0, -0.02, -0.004), off(m.knee[0], 0, 0.02, 0.004), 0.088, 0.059);  // thigh
+    add.blend = 0.022;
+    add.limb(off(m.hip[0], 0.010, -0.02, -0.004), off(m.knee[0], 0, 0.02, 0.004), 0.082, 0.058);  // thigh
     add.blend = 0.05;
-    add.blob(off(m.hip[0], -0.008, -0.045, -0.046), {0.080, 0.088, 0.070});  // seat
-    add.blob(between(m.hip[0], m.knee[0], 0.42) + Vec3{0.006, 0, 0.018}, {0.066, 0.16, 0.058});
+    add.blob(off(m.hip[0], -0.004, -0.040, -0.046), {0.080, 0.080, 0.070});  // seat
+    add.blob(between(m.hip[0], m.knee[0], 0.40) + Vec3{0.014, 0, 0.014}, {0.058, 0.16, 0.058});
     add.paired = false;
     // Trousers below the knee.
     for (std::size_t side = 0; side < 2; ++side) {
         const Vec3 knee = m.knee[side], ankle = m.ankle[side];
-        add.blend = 0.03;
-        add.limb(off(knee, 0, 0.03, 0.006), between(knee, ankle, 0.6) + Vec3{0, 0, -0.004}, 0.058, 0.052);
-        add.limb(between(knee, ankle, 0.4) + Vec3{0, 0, -0.008}, off(ankle, 0, 0.035, -0.008), 0.053, 0.047);
+        add.blend = 0.014;
+        add.limb(off(knee, 0, 0.02, 0.004), off(ankle, 0, 0.035, -0.008), 0.0575, 0.047);
+        add.blob(between(knee, ankle, 0.30) + Vec3{0, 0, -0.016}, {0.046, 0.12, 0.044});
         add.limb(off(ankle, 0, 0.05, -0.006), off(ankle, 0, -0.005, -0.004), 0.036, 0.036);  // what the hem hides
     }
     // Shoes: a heel, an instep, a ball and toes as one; the sole is cut flat.

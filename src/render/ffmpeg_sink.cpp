@@ -74,7 +74,7 @@ bool find_codec(std::string_view ending, Codec& out) {
         out = {true, {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "6", "-row-mt", "1", "-crf", "32", "-b:v",
                       "0", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-f", "webm"}};
     } else if (ending == ".gif") {
-        out = {false, {"-filter_complex", "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
+        out = {false, {"-filter_complex", "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=5:diff_mode=rectangle",
                        "-loop", "0", "-f", "gif"}};
     } else if (ending == ".apng") {
         out = {false, {"-c:v", "apng", "-pred", "mixed", "-plays", "0", "-f", "apng"}};
