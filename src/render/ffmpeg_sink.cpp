@@ -265,8 +265,10 @@ FilmStatus FfmpegSink::frame(std::int64_t, const Picture& picture) {
 }
 
 FilmStatus FfmpegSink::finish() {
+    // When only the last bytes found no room, ffmpeg 5.1 complains and yet answers 0.
     const int status = data_->end(false);
-    if (status != 0) {
+    const std::string& said = data_->said;
+    if (status != 0 || said.find("rror") != std::string::npos || said.find("No space") != std::string::npos) {
         return Unexpected(data_->failure("ffmpeg could not finish the film"));
     }
     return Ok{};
