@@ -127,7 +127,8 @@ void Elaboration::complete_attributes() {
                 }
             }
             if (type == nullptr) {
-                if (const auto d = find_declaration(node.of_type, node.span.file, "token type")) {
+                if (const auto d =
+                        find_declaration(node.of_type, node.span.file, Wanted::kTokenType)) {
                     type = d->token_type;
                 }
             }

@@ -106,6 +106,9 @@ struct StateElement : Element<lang::State> {
     net::Formula formula;
 };
 
+// What a name is looked up for among the declarations that a file can see.
+enum class Wanted : std::uint8_t { kNet, kTokenType };
+
 class Elaboration {
  public:
     explicit Elaboration(const Library& library) : library_(library) {}
@@ -160,7 +163,7 @@ class Elaboration {
     std::string key_of(const lang::Name& name, const Scope& scope);
     std::string path_of(const lang::Name& name, const Scope& scope);
     std::optional<Declaration> find_declaration(const lang::Path& path, std::uint32_t file,
-                                                std::string_view kind);
+                                                Wanted kind);
 
     // parameters.cpp -- their types and values
     Term parameter_value(std::uint32_t instance, std::size_t parameter);

@@ -79,32 +79,30 @@ bool Elaboration::add_member(const Scope& scope, const lang::Name& name, Member 
 }
 
 std::optional<Declaration> Elaboration::find_declaration(const lang::Path& path, std::uint32_t file,
-                                                         std::string_view kind) {
+                                                         Wanted kind) {
     const auto& visible = library_.visible[file];
+    const auto is_wanted = [&](const Declaration& d) {
+        return kind == Wanted::kNet ? d.net != nullptr : d.token_type != nullptr;
+    };
     if (path.steps.size() == 1) {
         const auto found = visible.find(path.steps[0].text);
         if (found != visible.end()) {
             const Declaration& d = found->second;
-            const bool fits = kind == "net"    ? d.net != nullptr
-                              : kind == "type" ? d.net == nullptr
-                                               : d.token_type != nullptr;
-            const bool missing =
-                d.net == nullptr && d.enumeration == nullptr && d.token_type == nullptr;
-            if (missing) {
-                return std::nullopt;
-            }
-            if (fits) {
+            if (is_wanted(d)) {
                 return d;
+            }
+            if (d.net == nullptr && d.enumeration == nullptr && d.token_type == nullptr) {
+                return std::nullopt;  // missing, and told already
             }
         }
     }
     std::vector<std::string> known;
     for (const auto& [name, d] : visible) {
-        if (kind == "net" ? d.net != nullptr : d.token_type != nullptr) {
+        if (is_wanted(d)) {
             known.push_back(name);
         }
     }
-    unknown(path.span, kind, lang::to_text(path), known);
+    unknown(path.span, kind == Wanted::kNet ? "net" : "token type", lang::to_text(path), known);
     return std::nullopt;
 }
 
@@ -213,7 +211,7 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
         element.scope = scope;
         element.path = path;
         if (p.runs) {
-            const auto net = find_declaration(p.runs.path, p.span.file, "net");
+            const auto net = find_declaration(p.runs.path, p.span.file, Wanted::kNet);
             if (net) {
                 element.runs = make_instance(*net, path, p.runs.span, scope, p.runs.args, {index});
             }
@@ -244,7 +242,7 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
     for (const lang::Use& u : body.uses) {
         const std::string path = path_of(u.name, scope);
         About about(*this, "use of " + lang::to_text(u.net), u.span);
-        const auto net = find_declaration(u.net, u.span.file, "net");
+        const auto net = find_declaration(u.net, u.span.file, Wanted::kNet);
         const std::uint32_t made =
             net ? make_instance(*net, path, u.span, scope, u.args, {}) : kNoInstance;
         add_member(scope, u.name, {MemberKind::kInstance, made, true});
