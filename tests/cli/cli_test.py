@@ -201,7 +201,11 @@ class Run(Cli):
         scene = self.scene("scene \"x\"\nuntil 1000000 h\nplace P takes 1 ms tokens 1\nt: P -> P\n")
         log = self.path / "log.csv"
         process = subprocess.Popen([PROGRAM, "run", scene, "--log", log, "--json"], stdout=subprocess.PIPE, text=True)
-        time.sleep(0.7)
+        for _ in range(600):  # the unfinished log shows that it runs
+            if len(os.listdir(self.path)) > 1:
+                break
+            time.sleep(0.05)
+        time.sleep(0.3)
         process.send_signal(signal.SIGINT)
         out, _ = process.communicate(timeout=30)
         report = json.loads(out)
