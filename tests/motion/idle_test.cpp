@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include "chain.h"
-#include "draw.h"
 
 using namespace puppetri;
 using namespace puppetri::motion;
@@ -27,11 +26,5 @@ TEST_CASE(
         CHECK(m.sway_mm < 60);
         CHECK(m.arm.speed_rad_s.value > 1e-3);
         CHECK(m.spine.speed_rad_s.value < 3);
-        Drawing d(f, 6, 2.2);
-        d.floor(2);
-        d.add(chain.world(1), 1, 2, true, {1, 0, 2});
-        d.add(chain.world(3), 3, 2, true, {1, 0, 2});
-        d.add(chain.world(3), 5, 2, false, {1, 0, 2});
-        d.save("idle.ppm");
     }
 }

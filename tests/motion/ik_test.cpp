@@ -2,10 +2,7 @@
 // Two-bone and seven-degree inverse kinematics, solving of controls, inertialization.
 #include <doctest/doctest.h>
 
-#include <chrono>
 #include <cstdint>
-#include <cstdlib>
-#include <new>
 
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/gait.h"
