@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kManyTickets =
     1024;  // from here on the tables are no longer in the nearest cache
+constexpr std::size_t kAhead = 16;
 constexpr std::uint32_t kFresh = 1, kRaced = 2, kStatus = 3;
 
 constexpr auto earlier = [](const Pending& a, const Pending& b) { return a.at < b.at; };
@@ -53,6 +54,9 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
         hot_[t].end = n.transition[t + 1].takes;
         hot_[t].level = row.level;
         hot_[t].flags = row.flags;
+        for (std::uint32_t i = row.takes; i < hot_[t].end && i < row.takes + 2; ++i) {
+            hot_[t].few[i - row.takes] = n.arcs[i];
+        }
         hot_[t].ticket_key = random_ ? stream_key(seed, n.transitions.path(t), "ticket") : 0;
     }
     const auto ahead = [this](const DurationTable& d) {
@@ -352,21 +356,36 @@ double Engine::ticket(std::uint32_t t) {
     return (hot_[t].flags & kHasOdds) != 0 ? e / odds(t) : e;
 }
 
-// The run after its first: large nets wait for memory, not for arithmetic, so what the next firings
-// will read is asked for some firings ahead: rows first, then arcs, then places.
-void Engine::look_ahead(const Lottery& lottery) const {
-    const NetTables& n = *tables_;
-    const Ticket* next = lottery.run.data() + lottery.head;
-    const std::size_t left = lottery.run.size() - lottery.head;
-    if (left <= 16) {
-        return;
+// Large nets wait for memory, not for arithmetic: what the next firings will read is asked for some
+// firings ahead.
+void Engine::prefetch_arcs(std::uint32_t t) const {
+    const Hot& h = hot_[t];
+    const Weighted* arcs = arcs_of(h);
+    for (std::uint32_t i = 0; i < h.end - h.takes && i < 6; ++i) {
+        __builtin_prefetch(&tables_->place[arcs[i].place]);
+        __builtin_prefetch(&state_.counts[arcs[i].place]);
     }
-    __builtin_prefetch(&hot_[next[16].transition]);
-    __builtin_prefetch(&n.arcs[hot_[next[10].transition].takes]);
-    const Hot& row = hot_[next[5].transition];
-    for (std::uint32_t i = row.takes; i < row.end && i < row.takes + 6; ++i) {
-        __builtin_prefetch(&n.place[n.arcs[i].place]);
-        __builtin_prefetch(&state_.counts[n.arcs[i].place]);
+}
+
+void Engine::look_ahead(const Lottery& lottery) const {
+    const Ticket* next = lottery.run.data() + lottery.head;
+    if (lottery.run.size() - lottery.head > kAhead) {
+        __builtin_prefetch(&hot_[next[kAhead].transition]);
+        __builtin_prefetch(arcs_of(hot_[next[12].transition]));
+        prefetch_arcs(next[8].transition);
+        const Hot& soon = hot_[next[4].transition];
+        const Weighted* arcs = arcs_of(soon);
+        for (std::uint32_t i = 0; i < soon.end - soon.takes && i < 6; ++i) {
+            __builtin_prefetch(&hot_[tables_->place[arcs[i].place].first.transition()]);
+        }
+    }
+    if (lottery.tickets.size() > kManyTickets) {
+        // The next winners are near the root.
+        for (std::size_t i = 3; i < 7; ++i) {
+            __builtin_prefetch(&hot_[lottery.tickets[i].transition]);
+        }
+        prefetch_arcs(lottery.tickets[1].transition);
+        prefetch_arcs(lottery.tickets[2].transition);
     }
 }
 
@@ -402,7 +421,12 @@ std::uint32_t Engine::race(std::uint32_t level) {
             lottery.clock = -puppetri::log(lottery.last_u);
             lottery.lazy = false;
         }
-        for (const Fresh& f : l.fresh) {
+        const std::size_t entered = l.fresh.size();
+        for (std::size_t i = 0; i < entered; ++i) {
+            const Fresh& f = l.fresh[i];
+            if (i + kAhead < entered) {
+                __builtin_prefetch(&hot_[l.fresh[i + kAhead].transition]);
+            }
             Hot& h = hot_[f.transition];
             if (h.candidate != f.stamp) {
                 continue;
@@ -450,12 +474,14 @@ std::uint32_t Engine::race(std::uint32_t level) {
         lottery.clock = lottery.front_key;
         lottery.front_key = -1;
         ++lottery.head;
-        look_ahead(lottery);
     } else {
         winner = lottery.tickets.front().transition;
         lottery.clock = lottery.tickets.front().key;
         lottery.lazy = false;
         heap_pop<2>(lottery.tickets, before);
+    }
+    if (l.live_raced > kAhead) {
+        look_ahead(lottery);
     }
     leave(winner);
     return winner;

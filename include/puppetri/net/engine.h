@@ -91,7 +91,9 @@ class Engine final : private Code::Reader {
         std::uint32_t takes = 0, gives = 0, end = 0;  // copies of the net's row
         std::uint16_t level = 0;
         std::uint8_t flags = 0;
+        Weighted few[2];  // its arcs, if they are no more
     };
+    static_assert(sizeof(Weighted) == 8);
     struct Fresh {
         std::uint32_t transition, stamp;
     };
@@ -127,15 +129,22 @@ class Engine final : private Code::Reader {
     void cross(const Watcher& w, std::uint32_t from, std::uint32_t to);
     void touch_dependents(std::uint32_t p);
     std::uint32_t level_of(std::uint32_t t) const { return hot_[t].level; }
+    // Where its arcs lie: takes, then gives.
+    const Weighted* arcs_of(const Hot& h) const {
+        return h.end - h.takes <= 2 ? h.few : tables_->arcs.data() + h.takes;
+    }
     std::span<const Weighted> takes(std::uint32_t t) const {
-        return {tables_->arcs.data() + hot_[t].takes, tables_->arcs.data() + hot_[t].gives};
+        const Hot& h = hot_[t];
+        return {arcs_of(h), h.gives - h.takes};
     }
     std::span<const Weighted> gives(std::uint32_t t) const {
-        return {tables_->arcs.data() + hot_[t].gives, tables_->arcs.data() + hot_[t].end};
+        const Hot& h = hot_[t];
+        return {arcs_of(h) + (h.gives - h.takes), h.end - h.gives};
     }
     std::uint32_t select();
     std::uint32_t race(std::uint32_t level);
     void look_ahead(const Lottery& lottery) const;
+    void prefetch_arcs(std::uint32_t t) const;
     void look_ahead(const PendingRing& ring) const;
     std::uint32_t ask_tie(std::uint32_t level);
     static void settle_lottery(Lottery& lottery);
