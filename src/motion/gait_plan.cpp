@@ -136,7 +136,8 @@ class Planner {
         if (first_) {
             to = {ahead_of_ankles() + x_ / 2 - 0.004 * x_, 1.7 * speed, 0};
         } else if (whole_) {
-            to = {ahead_of_ankles() + x_ / 2 + kBoundaryLead * x_ * clamp(half_ / (0.1 * n_), 0, 1),
+            to = {ahead_of_ankles() + x_ / 2 +
+                      kBoundaryLead * x_ * lerp(0.7, 1, clamp(half_ / (0.1 * n_), 0, 1)),
                   1.28 * speed, 0};
         }
         plan_.pelvis_path.z = plan_travel({now.position.z, now.velocity.z, 0}, to, T);
