@@ -381,6 +381,8 @@ struct formula : statement<N::kFormula, expr> {};
 struct enum_value : statement<N::kValue, name> {};
 // clang-format on
 
+#undef PUP_MATCH
+
 template <class Rule>
 bool read(std::span<const Token> tokens, std::span<const char> kinds, std::uint32_t begin,
           std::uint32_t end, Reading& out) {

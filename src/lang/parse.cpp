@@ -231,7 +231,7 @@ class Parser {
             complain(Entry::kStatement, tokens_, begin, end, reading_, element, report_);
             which = guess(begin);
             if (brace) {
-                recover(out, misspelt_net(begin) ? NodeKind::kNet : which, level, end, element);
+                recover(misspelt_net(begin) ? NodeKind::kNet : which, level, begin, end);
             }
             return;
         }
@@ -239,14 +239,13 @@ class Parser {
             complain(Entry::kStatement, tokens_, begin, end, reading_, element, report_);
             complain_on(begin, end, element);
             if (brace) {
-                recover(out, which, level, end, element);
+                recover(which, level, begin, end);
             }
             return;
         }
         if (!belongs(which, level, begin, element)) {
-            Body dropped;
             if (brace) {
-                recover(dropped, which, level, end, element);
+                recover(which, level, begin, end);
             }
             return;
         }
@@ -317,17 +316,19 @@ class Parser {
         }
     }
 
-    // Reads the block of a head that could not be read, to tell its defects too.
-    void recover(Body&, NodeKind which, Level level, std::uint32_t end,
-                 const std::string& element) {
+    // Reads the block of a head that could not be read, or has no place here, to tell its defects
+    // too.
+    void recover(NodeKind which, Level level, std::uint32_t begin, std::uint32_t end) {
         at_ = end;
         Body dropped;
-        std::vector<Property> properties;
+        const bool named = begin + 1 < end && is_word(kind(begin + 1));
+        const std::string name = named ? std::string(text(begin + 1)) : "";
         switch (which) {
             case NodeKind::kNet:
+                inner_body(dropped, Level::kNet, end, "net " + name);
+                break;
             case NodeKind::kFor:
-                inner_body(dropped, which == NodeKind::kNet ? Level::kNet : inner(level), end,
-                           element);
+                inner_body(dropped, inner(level), end, "for " + name);
                 break;
             case NodeKind::kCast:
                 cast(dropped, end);

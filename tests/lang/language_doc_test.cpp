@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reference of the language says nothing that the parser does not: every example parses and is in canonical form.
+// The reference of the language says nothing that the parser does not: every example parses and is
+// in canonical form.
 #include "lang/language_doc.h"
 
 #include <doctest/doctest.h>
@@ -23,7 +24,8 @@ TEST_CASE("every example of docs/language.md parses [golden]") {
         CHECK_MESSAGE(testing::broken_law(example.text) == "", example.text);
         const Checked<std::string> canonical = format(example.text, "docs/language.md");
         REQUIRE(canonical.has_value());
-        CHECK_MESSAGE(canonical.value() == example.text, "at line " << example.line << " of the page");
+        CHECK_MESSAGE(canonical.value() == example.text,
+                      "at line " << example.line << " of the page");
     }
 }
 
