@@ -12,8 +12,8 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "performing.h"
-#include "puppetri/io/atomic_file.h"
 #include "puppetri/base/frame_rate.h"
+#include "puppetri/io/atomic_file.h"
 #include "puppetri/render/film.h"
 #include "terminal.h"
 
@@ -32,13 +32,15 @@ struct Plan {
 
 // A natural number of at most nine digits.
 std::optional<std::int64_t> natural(const std::string& digits) {
-    if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) {
+    if (digits.empty() || digits.size() > 9 ||
+        digits.find_first_not_of("0123456789") != std::string::npos) {
         return std::nullopt;
     }
     return std::atoll(digits.c_str());
 }
 
-// The place of "%d" or "%04d" in a name: its start and length, and the digits wanted; none when there is no such thing.
+// The place of "%d" or "%04d" in a name: its start and length, and the digits wanted; none when
+// there is no such thing.
 struct Numbering {
     std::size_t at = std::string::npos, length = 0;
     int digits = 0;
@@ -59,7 +61,8 @@ Numbering numbering_of(const std::string& path) {
 std::string numbered(const std::string& pattern, std::int64_t number) {
     const Numbering n = numbering_of(pattern);
     std::string digits = std::to_string(number);
-    digits.insert(0, static_cast<std::size_t>(std::max(0, n.digits - static_cast<int>(digits.size()))), '0');
+    digits.insert(
+        0, static_cast<std::size_t>(std::max(0, n.digits - static_cast<int>(digits.size()))), '0');
     return pattern.substr(0, n.at) + digits + pattern.substr(n.at + n.length);
 }
 
@@ -70,13 +73,16 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
     plan.ending = ending_of(plan.output);
     constexpr std::array<std::string_view, 5> kEndings{".mp4", ".webm", ".gif", ".apng", ".png"};
     if (std::find(kEndings.begin(), kEndings.end(), plan.ending) == kEndings.end()) {
-        problems.push_back("cannot tell the kind of film of " + plan.output +
-                           ": name a file .mp4, .webm, .gif, .apng or .png, or frames like frames/%04d.png");
+        problems.push_back(
+            "cannot tell the kind of film of " + plan.output +
+            ": name a file .mp4, .webm, .gif, .apng or .png, or frames like frames/%04d.png");
     }
     const std::string size = arguments.text("--size", "1280x720");
     const std::size_t cross = std::min(size.find('x'), size.size());
-    const auto width = natural(size.substr(0, cross)), height = natural(size.substr(std::min(cross + 1, size.size())));
-    if (!width || !height || *width < kSmallest || *height < kSmallest || *width > kLargest || *height > kLargest) {
+    const auto width = natural(size.substr(0, cross)),
+               height = natural(size.substr(std::min(cross + 1, size.size())));
+    if (!width || !height || *width < kSmallest || *height < kSmallest || *width > kLargest ||
+        *height > kLargest) {
         problems.push_back("--size is WIDTHxHEIGHT in pixels like 1280x720, each from 16 to 8192");
     } else {
         plan.format.width = static_cast<int>(*width);
@@ -85,7 +91,9 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
     if (arguments.given("--frames")) {
         plan.frames = parse_frames(arguments.text("--frames"));
         if (!plan.frames) {
-            problems.push_back("--frames is a frame or a range like 0-479, counted from 0, the first not after the last");
+            problems.push_back(
+                "--frames is a frame or a range like 0-479, counted from 0, the first not after "
+                "the last");
         }
     }
     if (arguments.given("--fps")) {
@@ -99,7 +107,8 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
     }
     const std::int64_t threads = arguments.integer("--threads", 0);
     if (threads < 0 || threads > 256) {
-        problems.push_back("--threads is a number from 1 to 256, or 0 for as many as the machine has");
+        problems.push_back(
+            "--threads is a number from 1 to 256, or 0 for as many as the machine has");
     }
     plan.format.threads = static_cast<int>(threads);
     plan.camera = arguments.text("--camera");
@@ -108,7 +117,7 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
 
 // Counts frames on the terminal and stops the film on Ctrl-C.
 class Watched final : public render::FrameSink {
-   public:
+ public:
     Watched(render::FrameSink& sink, const render::FilmFormat& format)
         : sink_(sink), format_(format), progress_("drawing") {}
 
@@ -117,13 +126,14 @@ class Watched final : public render::FrameSink {
             return Unexpected(render::FilmError{"stopped by Ctrl-C", "", ""});
         }
         render::FilmStatus status = sink_.frame(number, picture);
-        const std::int64_t all = format_.last_frame - format_.first_frame + 1, done = number - format_.first_frame + 1;
+        const std::int64_t all = format_.last_frame - format_.first_frame + 1,
+                           done = number - format_.first_frame + 1;
         progress_.show(static_cast<double>(done) / static_cast<double>(all),
                        "frame " + std::to_string(done) + " of " + std::to_string(all));
         return status;
     }
 
-   private:
+ private:
     render::FrameSink& sink_;
     const render::FilmFormat& format_;
     Progress progress_;
@@ -136,11 +146,12 @@ render::FilmError film_error(const Diagnostics& list) {
 
 // One PNG file per frame, or one alone.
 class PngFiles final : public render::FrameSink {
-   public:
+ public:
     explicit PngFiles(std::string pattern) : pattern_(std::move(pattern)) {}
 
     render::FilmStatus frame(std::int64_t number, const render::Picture& picture) override {
-        const std::string path = numbering_of(pattern_).at == std::string::npos ? pattern_ : numbered(pattern_, number);
+        const std::string path =
+            numbering_of(pattern_).at == std::string::npos ? pattern_ : numbered(pattern_, number);
         const Status status = io::write_file(path, render::encode_png(picture));
         if (!status) {
             return Unexpected(film_error(status.error()));
@@ -148,7 +159,7 @@ class PngFiles final : public render::FrameSink {
         return Ok{};
     }
 
-   private:
+ private:
     std::string pattern_;
 };
 
@@ -170,8 +181,8 @@ int make(const Plan& plan, const render::RenderScene& scene) {
         std::string pattern = plan.output;
         if (!pictures) {
             pattern = plan.output.substr(0, plan.output.size() - plan.ending.size()) + "_%04d.png";
-            say("there is no program ffmpeg to make " + plan.output + ": writing the frames " + pattern +
-                " instead (on Debian: apt-get install ffmpeg)");
+            say("there is no program ffmpeg to make " + plan.output + ": writing the frames " +
+                pattern + " instead (on Debian: apt-get install ffmpeg)");
         }
         PngFiles files(pattern);
         Watched watched(files, format);
@@ -224,9 +235,9 @@ int run(const Arguments& arguments) {
     }
     const scene::Scene& scene = *staged->scene;
     const stage::Performance& performance = *staged->performed.performance;
-    const auto camera = std::find_if(scene.cameras.begin(), scene.cameras.end(), [&](const scene::Camera& one) {
-        return plan.camera.empty() || one.name == plan.camera;
-    });
+    const auto camera = std::find_if(
+        scene.cameras.begin(), scene.cameras.end(),
+        [&](const scene::Camera& one) { return plan.camera.empty() || one.name == plan.camera; });
     const bool found = camera != scene.cameras.end();
     if (!plan.camera.empty() && !found) {
         say_error("the scene has no camera " + plan.camera);
@@ -250,7 +261,8 @@ int run(const Arguments& arguments) {
         plan.format.last_frame = plan.format.first_frame;
     }
     const double aspect = static_cast<double>(plan.format.width) / plan.format.height;
-    const render::CameraPath path(found ? *camera : render::default_camera(performance), performance, aspect);
+    const render::CameraPath path(found ? *camera : render::default_camera(performance),
+                                  performance, aspect);
     render::RenderScene picture{&performance, &path, scene.play.cast.sets, {}};
     picture.look.dither = plan.ending != ".gif" && plan.ending != ".apng";
     return make(plan, picture);
@@ -259,23 +271,30 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command render_command() {
-    return {"render",
-            "draw a film of a scene, or pictures",
-            "Performs the scene and draws it: figures and props under a sun, on the scene's road or floor, seen by its\n"
-            "camera. The name of the file says what to make: .mp4, .webm, .gif, .apng (with the program ffmpeg), .png for\n"
+    return {"render", "draw a film of a scene, or pictures",
+            "Performs the scene and draws it: figures and props under a sun, on the scene's road "
+            "or floor, seen by its\n"
+            "camera. The name of the file says what to make: .mp4, .webm, .gif, .apng (with the "
+            "program ffmpeg), .png for\n"
             "one picture, or numbered pictures where the name has a %04d.\n\n"
             "Examples:\n"
             "  puppetri render ball.pup -o ball.mp4\n"
-            "  puppetri render ball.pup -o ball.mp4 --size 960x540 --frames 0-479     the first 20 s at 24 frames/s\n"
+            "  puppetri render ball.pup -o ball.mp4 --size 960x540 --frames 0-479     the first 20 "
+            "s at 24 frames/s\n"
             "  puppetri render ball.pup -o start.png --frames 48                      one picture\n"
-            "  puppetri render ball.pup -o frames/%04d.png                            every frame as a picture",
-            with_performing_options({{"scene", Value::kText, "SCENE", "the scene to perform", true},
-             {"-o,--output", Value::kText, "FILE", "the film or picture to make", true},
-             {"--size", Value::kText, "WxH", "pixels (default 1280x720)", false},
-             {"--frames", Value::kText, "A-B", "only these frames, from 0, both included (default: all)", false},
-             {"--fps", Value::kText, "RATE", "frames per second (default: the scene's)", false},
-             {"--camera", Value::kText, "NAME", "which of the scene's cameras (default: the first)", false},
-             {"--threads", Value::kInteger, "N", "pictures drawn at once (default: as many as the machine has cores)", false}}),
+            "  puppetri render ball.pup -o frames/%04d.png                            every frame "
+            "as a picture",
+            with_performing_options(
+                {{"scene", Value::kText, "SCENE", "the scene to perform", true},
+                 {"-o,--output", Value::kText, "FILE", "the film or picture to make", true},
+                 {"--size", Value::kText, "WxH", "pixels (default 1280x720)", false},
+                 {"--frames", Value::kText, "A-B",
+                  "only these frames, from 0, both included (default: all)", false},
+                 {"--fps", Value::kText, "RATE", "frames per second (default: the scene's)", false},
+                 {"--camera", Value::kText, "NAME",
+                  "which of the scene's cameras (default: the first)", false},
+                 {"--threads", Value::kInteger, "N",
+                  "pictures drawn at once (default: as many as the machine has cores)", false}}),
             run};
 }
 

@@ -17,8 +17,9 @@ struct Node {
     std::uint32_t vertex = kNone;
     std::uint32_t first_active = 0, active_count = 0;
     std::uint8_t depth = 0;
-    std::array<float, 8> corner{};  // of leaves: the function at the corners, bit 0 for x, bit 1 for y, bit 2 for z
-    Vec3 low;                       // lattice space
+    std::array<float, 8>
+        corner{};  // of leaves: the function at the corners, bit 0 for x, bit 1 for y, bit 2 for z
+    Vec3 low;      // lattice space
 };
 
 // True when the corners inside hang together along edges of the cell, and so do those outside.
@@ -48,7 +49,7 @@ bool simple(const std::array<float, 8>& corner) {
 }
 
 class Contourer {
-   public:
+ public:
     Contourer(const ImplicitShape& shape, const ContourGrid& grid) : shape_(shape), grid_(grid) {
         nodes_.reserve(60'000);
         Node root;
@@ -73,15 +74,20 @@ class Contourer {
                 out.triangles.push_back({q[0], q[1], q[2]});
                 continue;
             }
-            // The diagonal that bends less with the surface: the one whose ends agree more about the normal.
+            // The diagonal that bends less with the surface: the one whose ends agree more about
+            // the normal.
             const auto& n = out.normals_model;
             const auto& p = out.positions_model;
             const double first = (1.5 - dot(n[q[0]], n[q[2]])) * length(p[q[0]] - p[q[2]]);
             const double second = (1.5 - dot(n[q[1]], n[q[3]])) * length(p[q[1]] - p[q[3]]);
-            // Ties go by a measure that is the same on both sides of the body, so that mirrored quads are divided alike.
-            const auto measure = [&](std::uint32_t v) { return std::fabs(p[v].x) + 0.37 * p[v].y + 0.21 * p[v].z; };
+            // Ties go by a measure that is the same on both sides of the body, so that mirrored
+            // quads are divided alike.
+            const auto measure = [&](std::uint32_t v) {
+                return std::fabs(p[v].x) + 0.37 * p[v].y + 0.21 * p[v].z;
+            };
             const bool tie = std::fabs(first - second) < 1e-7 * (first + second);
-            const bool by_measure = std::max(measure(q[0]), measure(q[2])) > std::max(measure(q[1]), measure(q[3]));
+            const bool by_measure =
+                std::max(measure(q[0]), measure(q[2])) > std::max(measure(q[1]), measure(q[3]));
             if (tie ? by_measure : first < second) {
                 out.triangles.push_back({q[0], q[1], q[2]});
                 out.triangles.push_back({q[0], q[2], q[3]});
@@ -93,8 +99,10 @@ class Contourer {
         return out;
     }
 
-   private:
-    Vec3 model(Vec3 lattice) const { return {grid_.x(lattice.x), grid_.y(lattice.y), grid_.z(lattice.z)}; }
+ private:
+    Vec3 model(Vec3 lattice) const {
+        return {grid_.x(lattice.x), grid_.y(lattice.y), grid_.z(lattice.z)};
+    }
     double cell_size(int depth) const { return grid_.size / static_cast<double>(1u << depth); }
 
     std::span<const std::uint16_t> active(const Node& n) const {
@@ -134,8 +142,8 @@ class Contourer {
             return;
         }
         if (n.depth >= 3) {
-            // Deep inside or far outside nothing is to be found. Values are distances to first order only: take twice
-            // the half diagonal.
+            // Deep inside or far outside nothing is to be found. Values are distances to first
+            // order only: take twice the half diagonal.
             const double d = shape_.distance((box.low + box.high) * 0.5, here);
             if (std::fabs(d) > length(box.high - box.low)) {
                 nodes_[index].corner.fill(d < 0 ? -1.0f : 1.0f);
@@ -146,8 +154,10 @@ class Contourer {
             evaluate_corners(index, size);
             // A thin gap may pass between all corners: the middle tells.
             const auto& corner = nodes_[index].corner;
-            const bool all_alike = std::all_of(corner.begin(), corner.end(), [&](float c) { return (c < 0) == (corner[0] < 0); });
-            const bool missed = all_alike && (shape_.distance((box.low + box.high) * 0.5, here) < 0) != (corner[0] < 0);
+            const bool all_alike = std::all_of(corner.begin(), corner.end(),
+                                               [&](float c) { return (c < 0) == (corner[0] < 0); });
+            const bool missed = all_alike && (shape_.distance((box.low + box.high) * 0.5, here) <
+                                              0) != (corner[0] < 0);
             if (n.depth >= wanted + kExtraLevels || (simple(corner) && !missed)) {
                 return;
             }
@@ -157,7 +167,8 @@ class Contourer {
         for (int c = 0; c < 8; ++c) {
             Node child;
             child.depth = static_cast<std::uint8_t>(n.depth + 1);
-            child.low = n.low + Vec3{(c & 1) ? size / 2 : 0, (c & 2) ? size / 2 : 0, (c & 4) ? size / 2 : 0};
+            child.low = n.low + Vec3{(c & 1) ? size / 2 : 0, (c & 2) ? size / 2 : 0,
+                                     (c & 4) ? size / 2 : 0};
             child.first_active = nodes_[index].first_active;
             child.active_count = nodes_[index].active_count;
             nodes_.push_back(child);
@@ -178,7 +189,9 @@ class Contourer {
     // The function at a lattice point, evaluated once for all cells that meet there.
     float corner_value(Vec3 p, std::span<const std::uint16_t> near) {
         const double finest = cell_size(kDeepest);
-        const auto step = [&](double v) { return static_cast<std::uint64_t>((v - grid_.low) / finest + 0.5); };
+        const auto step = [&](double v) {
+            return static_cast<std::uint64_t>((v - grid_.low) / finest + 0.5);
+        };
         const std::uint64_t key = step(p.x) << 40 | step(p.y) << 20 | step(p.z);
         std::size_t slot = (key * 0x9E3779B97F4A7C15u) >> (64 - kTableBits);
         while (known_[slot].key != key && known_[slot].key != kUnknown) {
@@ -211,7 +224,9 @@ class Contourer {
             }
             for (int h = 0; h < 2; ++h) {
                 const int along = h << d;
-                edge({child(n, along), child(n, along | a), child(n, along | b), child(n, along | a | b)}, d);
+                edge({child(n, along), child(n, along | a), child(n, along | b),
+                      child(n, along | a | b)},
+                     d);
             }
         }
     }
@@ -230,7 +245,8 @@ class Contourer {
             for (int h = 0; h < 2; ++h) {
                 std::array<std::uint32_t, 4> around;
                 for (int i = 0; i < 4; ++i) {
-                    const int on_a = i & 1, on_b = i >> 1;  // sides along (e + 1) % 3 and (e + 2) % 3
+                    const int on_a = i & 1,
+                              on_b = i >> 1;  // sides along (e + 1) % 3 and (e + 2) % 3
                     const bool d_first = (e + 1) % 3 == d;
                     const int side_d = d_first ? on_a : on_b, side_f = d_first ? on_b : on_a;
                     around[static_cast<std::size_t>(i)] =
@@ -241,7 +257,8 @@ class Contourer {
         }
     }
 
-    // Four cells around an edge along axis d; bit 0 of the place says the side along (d + 1) % 3, bit 1 the other.
+    // Four cells around an edge along axis d; bit 0 of the place says the side along (d + 1) % 3,
+    // bit 1 the other.
     void edge(std::array<std::uint32_t, 4> around, int d) {
         const int a = (d + 1) % 3, b = (d + 2) % 3;
         if (leaf(around[0]) && leaf(around[1]) && leaf(around[2]) && leaf(around[3])) {
@@ -252,7 +269,8 @@ class Contourer {
             std::array<std::uint32_t, 4> halves;
             for (int i = 0; i < 4; ++i) {
                 halves[static_cast<std::size_t>(i)] =
-                    child(around[static_cast<std::size_t>(i)], (h << d) | ((1 - (i & 1)) << a) | ((1 - (i >> 1)) << b));
+                    child(around[static_cast<std::size_t>(i)],
+                          (h << d) | ((1 - (i & 1)) << a) | ((1 - (i >> 1)) << b));
             }
             edge(halves, d);
         }
@@ -261,7 +279,8 @@ class Contourer {
     void smallest_edge(const std::array<std::uint32_t, 4>& around, int d, int a, int b) {
         int finest = 0;
         for (int i = 1; i < 4; ++i) {
-            if (nodes_[around[static_cast<std::size_t>(i)]].depth > nodes_[around[static_cast<std::size_t>(finest)]].depth) {
+            if (nodes_[around[static_cast<std::size_t>(i)]].depth >
+                nodes_[around[static_cast<std::size_t>(finest)]].depth) {
                 finest = i;
             }
         }
@@ -273,11 +292,13 @@ class Contourer {
             return;
         }
         const double size = cell_size(n.depth);
-        Vec3 p = n.low + Vec3{(corner & 1) ? size : 0, (corner & 2) ? size : 0, (corner & 4) ? size : 0};
+        Vec3 p =
+            n.low + Vec3{(corner & 1) ? size : 0, (corner & 2) ? size : 0, (corner & 4) ? size : 0};
         const double way = size * std::clamp(v0 / (v0 - v1), 0.0, 1.0);
         (d == 0 ? p.x : d == 1 ? p.y : p.z) += way;
         std::array<std::uint32_t, 4> quad;
-        static constexpr std::array<std::size_t, 4> kRound{0, 1, 3, 2};  // counter-clockwise seen from +d
+        static constexpr std::array<std::size_t, 4> kRound{0, 1, 3,
+                                                           2};  // counter-clockwise seen from +d
         int corners = 0;
         for (std::size_t k = 0; k < 4; ++k) {
             Node& touched = nodes_[around[kRound[v0 < 0 ? k : 3 - k]]];
@@ -302,7 +323,8 @@ class Contourer {
         }
     }
 
-    // Vertices slide to the middle of their neighbours along the surface; Newton steps keep them on it.
+    // Vertices slide to the middle of their neighbours along the surface; Newton steps keep them on
+    // it.
     void relax() {
         for (std::size_t i = 0; i < positions_.size(); ++i) {
             positions_[i] = positions_[i] * (1.0 / crossings_[i]);
@@ -364,7 +386,8 @@ class Contourer {
         for (std::size_t i = 0; i < positions_.size(); ++i) {
             const FieldSample f = shape_.sample(positions_[i], near(i));
             normals_[i] = normalized(f.gradient, {0, 1, 0});
-            positions_[i] = positions_[i] - f.gradient * (f.distance / std::max(dot(f.gradient, f.gradient), 0.05));
+            positions_[i] = positions_[i] -
+                            f.gradient * (f.distance / std::max(dot(f.gradient, f.gradient), 0.05));
         }
     }
 
@@ -377,7 +400,8 @@ class Contourer {
 
     const ImplicitShape& shape_;
     const ContourGrid& grid_;
-    std::vector<Known> known_ = std::vector<Known>(std::size_t{1} << kTableBits);  // open addressing
+    std::vector<Known> known_ =
+        std::vector<Known>(std::size_t{1} << kTableBits);  // open addressing
     std::size_t known_count_ = 0;
     std::vector<Node> nodes_;
     std::vector<std::uint16_t> active_;
@@ -399,6 +423,8 @@ double AxisMap::operator()(double u) const {
     return model_m[i - 1] + t * (model_m[i] - model_m[i - 1]);
 }
 
-Contour contour(const ImplicitShape& shape, const ContourGrid& grid) { return Contourer(shape, grid).finish(); }
+Contour contour(const ImplicitShape& shape, const ContourGrid& grid) {
+    return Contourer(shape, grid).finish();
+}
 
 }  // namespace puppetri::figure

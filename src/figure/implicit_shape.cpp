@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Distances and gradients of round cones, and their smooth union.
 //
-// Source  the round cone after I. Quilez, "distance functions"; written here with the foot s of the surface normal on
-//         the axis: with sin t = (ra - rb) / L, a point x along and y beside the axis has s = x - y tan t, clamped to
-//         the axis, and the distance to the sphere around s is the distance to the hull.
-//         A squashed frame changes distances; dividing by the length of the gradient in model space makes the value a
-//         distance again to first order (G. Taubin, "Distance approximations for rasterizing implicit curves", 1994).
-//         The smooth minimum is Quilez's quadratic one: min(a, b) - k h^2 / 4 with h = max(0, 1 - |a - b| / k).
+// Source  the round cone after I. Quilez, "distance functions"; written here with the foot s of the
+// surface normal on
+//         the axis: with sin t = (ra - rb) / L, a point x along and y beside the axis has s = x - y
+//         tan t, clamped to the axis, and the distance to the sphere around s is the distance to
+//         the hull. A squashed frame changes distances; dividing by the length of the gradient in
+//         model space makes the value a distance again to first order (G. Taubin, "Distance
+//         approximations for rasterizing implicit curves", 1994). The smooth minimum is Quilez's
+//         quadratic one: min(a, b) - k h^2 / 4 with h = max(0, 1 - |a - b| / k).
 #include "implicit_shape.h"
 
 #include <algorithm>
@@ -63,7 +65,8 @@ double ImplicitShape::distance_to(const Prepared& c, Vec3 p_model) {
     if (!c.squashed) {
         return f.distance - f.radius;
     }
-    const Vec3 g{f.away.x * c.inverse_scale.x, f.away.y * c.inverse_scale.y, f.away.z * c.inverse_scale.z};
+    const Vec3 g{f.away.x * c.inverse_scale.x, f.away.y * c.inverse_scale.y,
+                 f.away.z * c.inverse_scale.z};
     return (f.distance - f.radius) * f.distance / std::max(length(g), 1e-12);
 }
 
@@ -76,11 +79,13 @@ FieldSample ImplicitShape::sample_of(const Prepared& c, Vec3 p_model) {
     Vec3 g{n.x * c.inverse_scale.x, n.y * c.inverse_scale.y, n.z * c.inverse_scale.z};
     const double steepness = std::max(length(g), 1e-9);
     g = g * (1 / steepness);
-    return {(f.distance - f.radius) / steepness, c.turned ? rotate(conjugate(c.local_from_model), g) : g};
+    return {(f.distance - f.radius) / steepness,
+            c.turned ? rotate(conjugate(c.local_from_model), g) : g};
 }
 
 double ImplicitShape::pair_distance(const Prepared& c, Vec3 p) {
-    return c.paired ? smooth_min(distance_to(c, p), distance_to(c, mirrored(p)), c.blend_m) : distance_to(c, p);
+    return c.paired ? smooth_min(distance_to(c, p), distance_to(c, mirrored(p)), c.blend_m)
+                    : distance_to(c, p);
 }
 
 FieldSample ImplicitShape::pair_sample(const Prepared& c, Vec3 p) {
@@ -118,7 +123,8 @@ void ImplicitShape::add(const RoundCone& cone) {
     for (const Vec3 end : {cone.a, cone.b}) {
         const double r = end == cone.a ? cone.radius_a : cone.radius_b;
         for (int corner = 0; corner < 8; ++corner) {
-            const Vec3 q = end + Vec3{(corner & 1) ? r : -r, (corner & 2) ? r : -r, (corner & 4) ? r : -r};
+            const Vec3 q =
+                end + Vec3{(corner & 1) ? r : -r, (corner & 2) ? r : -r, (corner & 4) ? r : -r};
             const Vec3 scaled{q.x * cone.scale.x, q.y * cone.scale.y, q.z * cone.scale.z};
             const Vec3 at = cone.origin_model + rotate(cone.model_from_local, scaled);
             box.add(at);
@@ -148,8 +154,8 @@ void ImplicitShape::add(const RoundCone& cone) {
     }
     prepared_.push_back(c);
     tight_.push_back(box);
-    // The smooth minimum acts where two distances differ by less than `blend`; what is twice as far cannot move the
-    // sign even through a second seam.
+    // The smooth minimum acts where two distances differ by less than `blend`; what is twice as far
+    // cannot move the sign even through a second seam.
     reach_.push_back(box.grown(2 * cone.blend_m));
 }
 
@@ -173,15 +179,18 @@ FieldSample ImplicitShape::sample(Vec3 p, std::span<const std::uint16_t> active)
     for (const std::uint16_t i : active) {
         const Prepared& c = prepared_[i];
         const FieldSample one = pair_sample(c, p);
-        all = c.carve ? negative(smooth_min(negative(all), one, c.blend_m)) : smooth_min(all, one, c.blend_m);
+        all = c.carve ? negative(smooth_min(negative(all), one, c.blend_m))
+                      : smooth_min(all, one, c.blend_m);
     }
     if (relief_ != nullptr && std::fabs(all.distance) < 0.02) {
-        // Central differences over half a millimetre: the steps of the relief are a few millimetres wide.
+        // Central differences over half a millimetre: the steps of the relief are a few millimetres
+        // wide.
         constexpr double kStep = 0.0005;
         const auto at = [&](Vec3 way) { return relief_(relief_context_, p + way); };
         const auto slope = [&](Vec3 way) { return (at(way) - at(-way)) / (2 * kStep); };
         all.distance -= at({});
-        all.gradient = all.gradient - Vec3{slope({kStep, 0, 0}), slope({0, kStep, 0}), slope({0, 0, kStep})};
+        all.gradient =
+            all.gradient - Vec3{slope({kStep, 0, 0}), slope({0, kStep, 0}), slope({0, 0, kStep})};
     }
     return all;
 }

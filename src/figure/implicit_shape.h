@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Implicit shapes: a solid as the set of points where a smooth function is negative. Round cones and ellipsoids,
-// squashed and turned at will, are joined one after the other by a smooth minimum, which rounds the seams as flesh does.
+// Implicit shapes: a solid as the set of points where a smooth function is negative. Round cones
+// and ellipsoids, squashed and turned at will, are joined one after the other by a smooth minimum,
+// which rounds the seams as flesh does.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,18 +16,20 @@ struct FieldSample {
     Vec3 gradient;        // about unit length, pointing outwards
 };
 
-// The hull of two spheres, in a frame of its own that may be squashed: the point p of model space is seen at
-// (u . (p - origin) / scale.x, v . ... / scale.y, w . ... / scale.z), where u, v, w = rotation of the model axes.
+// The hull of two spheres, in a frame of its own that may be squashed: the point p of model space
+// is seen at (u . (p - origin) / scale.x, v . ... / scale.y, w . ... / scale.z), where u, v, w =
+// rotation of the model axes.
 struct RoundCone {
-    Vec3 a, b;                // in the local frame before scaling, metres
+    Vec3 a, b;  // in the local frame before scaling, metres
     double radius_a = 0, radius_b = 0;
     Vec3 origin_model;
     Quat model_from_local;
     Vec3 scale{1, 1, 1};
-    double blend_m = 0.01;    // how far the seam to what came before is rounded
-    std::uint8_t level = 0;   // how many times finer than the coarsest cells it is to be meshed (powers of two)
-    bool carve = false;       // taken away instead of added
-    bool paired = false;      // joined with its mirror image in x = 0 before both join the rest
+    double blend_m = 0.01;  // how far the seam to what came before is rounded
+    std::uint8_t level =
+        0;  // how many times finer than the coarsest cells it is to be meshed (powers of two)
+    bool carve = false;   // taken away instead of added
+    bool paired = false;  // joined with its mirror image in x = 0 before both join the rest
 };
 
 // A box along the axes.
@@ -39,7 +42,7 @@ struct Bounds {
 
 // Primitives in the order in which they are joined.
 class ImplicitShape {
-   public:
+ public:
     void add(const RoundCone& cone);
     int size() const { return static_cast<int>(cones_.size()); }
     const RoundCone& cone(int i) const { return cones_[static_cast<std::size_t>(i)]; }
@@ -57,7 +60,7 @@ class ImplicitShape {
     // Metres by which the surface stands out at a point; context outlives the shape. None: nowhere.
     void set_relief(double (*relief)(const void* context, Vec3 p_model), const void* context);
 
-   private:
+ private:
     // What every evaluation needs of a cone, worked out once.
     struct Prepared {
         Vec3 origin_model, a, along, inverse_scale;

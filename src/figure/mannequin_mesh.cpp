@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: MIT
-// The mannequin's skin: contour the shape, cut it along the borders of the clothes, bind it to the joints.
+// The mannequin's skin: contour the shape, cut it along the borders of the clothes, bind it to the
+// joints.
 #include "puppetri/figure/mannequin_mesh.h"
 
 #include <algorithm>
 
 #include "contour.h"
 #include "mannequin_shape.h"
-#include "skin_weights.h"
 #include "puppetri/base/require.h"
+#include "skin_weights.h"
 
 namespace puppetri::figure {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-// Divides triangles so that no edge crosses a border of the clothes: vertices that are near to it slide onto it, edges
-// that still cross it get a vertex there.
+// Divides triangles so that no edge crosses a border of the clothes: vertices that are near to it
+// slide onto it, edges that still cross it get a vertex there.
 class Tailor {
-   public:
+ public:
     Tailor(Contour& body, const ImplicitShape& shape, const Landmarks& marks)
-        : body_(body), shape_(shape), marks_(marks), zones_(body.triangles.size(), Zone::kShirt),
+        : body_(body),
+          shape_(shape),
+          marks_(marks),
+          zones_(body.triangles.size(), Zone::kShirt),
           assigned_(body.triangles.size(), 0) {
         for (int i = 0; i < shape.size(); ++i) {
             everything_.push_back(static_cast<std::uint16_t>(i));
@@ -36,8 +40,9 @@ class Tailor {
 
     const std::vector<Zone>& zones() const { return zones_; }
 
-   private:
-    static constexpr double kSnap = 0.32;  // an edge is not cut nearer to its end than this; a vertex slides instead
+ private:
+    static constexpr double kSnap =
+        0.32;  // an edge is not cut nearer to its end than this; a vertex slides instead
 
     double value(int which, Vec3 p) const {
         return border_applies(marks_, which, p) ? border(marks_, which, p) : 1.0;
@@ -47,7 +52,8 @@ class Tailor {
         for (int step = 0; step < 2; ++step) {
             const FieldSample f = shape_.sample(body_.positions_model[v], everything_);
             body_.positions_model[v] =
-                body_.positions_model[v] - f.gradient * (f.distance / std::max(dot(f.gradient, f.gradient), 0.05));
+                body_.positions_model[v] -
+                f.gradient * (f.distance / std::max(dot(f.gradient, f.gradient), 0.05));
             body_.normals_model[v] = normalized(f.gradient, {0, 1, 0});
         }
     }
@@ -109,7 +115,8 @@ class Tailor {
 
     static bool crosses(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
 
-    // Each edge once (its other triangle has it the other way round): use(low vertex, high vertex, share of the way).
+    // Each edge once (its other triangle has it the other way round): use(low vertex, high vertex,
+    // share of the way).
     template <class Use>
     void for_crossing_edges(const std::vector<double>& g, Use&& use) {
         const std::size_t count = body_.triangles.size();
@@ -165,7 +172,9 @@ class Tailor {
 
     struct Crossing {
         std::uint32_t low, high, middle;  // the ends of the edge, the vertex on it
-        bool operator<(const Crossing& o) const { return low != o.low ? low < o.low : high < o.high; }
+        bool operator<(const Crossing& o) const {
+            return low != o.low ? low < o.low : high < o.high;
+        }
     };
 
     Contour& body_;
@@ -183,8 +192,9 @@ std::array<float, 3> floats(Vec3 v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-// In sharp creases (between fingers, behind the ears) triangles are too coarse to follow the function, and its gradient
-// says little about them: there the normals lean to those of the triangles around.
+// In sharp creases (between fingers, behind the ears) triangles are too coarse to follow the
+// function, and its gradient says little about them: there the normals lean to those of the
+// triangles around.
 void settle_normals(Contour& body) {
     std::vector<Vec3> around(body.positions_model.size());
     for (const auto& t : body.triangles) {
@@ -207,7 +217,8 @@ Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
     PUP_REQUIRE(skeleton.height_m > 0);
     const Landmarks marks = landmarks_of(skeleton);
     ImplicitShape shape = mannequin_shape(marks);
-    shape.set_relief([](const void* context, Vec3 p) { return relief(*static_cast<const Landmarks*>(context), p); },
+    shape.set_relief([](const void* context,
+                        Vec3 p) { return relief(*static_cast<const Landmarks*>(context), p); },
                      &marks);
     const ContourGrid grid = mannequin_grid(marks);
     Contour body = contour(shape, grid);
@@ -216,8 +227,10 @@ Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
     const SkinWeights weights(skeleton, marks);
 
     Mesh mesh;
-    mesh.materials = {{"skin", palette.skin, 0.62f, 0}, {"hair", palette.hair, 0.55f, 0},
-                      {"shirt", palette.main, 0.8f, 0}, {"trousers", palette.second, 0.85f, 0},
+    mesh.materials = {{"skin", palette.skin, 0.62f, 0},
+                      {"hair", palette.hair, 0.55f, 0},
+                      {"shirt", palette.main, 0.8f, 0},
+                      {"trousers", palette.second, 0.85f, 0},
                       {"shoes", palette.accent, 0.5f, 0}};
     const std::size_t n = body.positions_model.size();
     mesh.positions.reserve(n);

@@ -13,20 +13,25 @@ namespace puppetri::figure {
 void circle_points(int count, std::span<double> cosines, std::span<double> sines) {
     for (int i = 0; i < count; ++i) {
         const double angle = 2 * kPi * i / count;
-        cosines[static_cast<std::size_t>(i)] = 4 * i % count == 0 && (4 * i / count) % 2 == 1 ? 0 : puppetri::cos(angle);
+        cosines[static_cast<std::size_t>(i)] =
+            4 * i % count == 0 && (4 * i / count) % 2 == 1 ? 0 : puppetri::cos(angle);
         sines[static_cast<std::size_t>(i)] = 2 * i % count == 0 ? 0 : puppetri::sin(angle);
     }
 }
 
-void append_revolution(Mesh& mesh, std::span<const ProfilePoint> profile, int sectors, const Transform& model_from_local,
-                       std::uint32_t material, const std::uint16_t* joint) {
+void append_revolution(Mesh& mesh, std::span<const ProfilePoint> profile, int sectors,
+                       const Transform& model_from_local, std::uint32_t material,
+                       const std::uint16_t* joint) {
     PUP_REQUIRE(profile.size() >= 3 && sectors >= 3);
-    std::vector<double> cosines(static_cast<std::size_t>(sectors)), sines(static_cast<std::size_t>(sectors));
+    std::vector<double> cosines(static_cast<std::size_t>(sectors)),
+        sines(static_cast<std::size_t>(sectors));
     circle_points(sectors, cosines, sines);
     const auto vertex = [&](Vec3 p_local, Vec3 n_local) {
         const Vec3 p = model_from_local * p_local, n = rotate(model_from_local.rotation, n_local);
-        mesh.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-        mesh.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+        mesh.positions.push_back(
+            {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+        mesh.normals.push_back(
+            {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
         if (joint != nullptr) {
             mesh.joints.push_back({*joint, 0, 0, 0});
             mesh.weights.push_back({1, 0, 0, 0});
@@ -35,7 +40,8 @@ void append_revolution(Mesh& mesh, std::span<const ProfilePoint> profile, int se
     };
     const auto first_triangle = static_cast<std::uint32_t>(mesh.triangles.size());
     const std::uint32_t low = vertex({0, profile.front().y_m, 0}, {0, -1, 0});
-    const auto rings = static_cast<std::uint32_t>(profile.size() - 2), n = static_cast<std::uint32_t>(sectors);
+    const auto rings = static_cast<std::uint32_t>(profile.size() - 2),
+               n = static_cast<std::uint32_t>(sectors);
     for (std::uint32_t r = 0; r < rings; ++r) {
         const ProfilePoint& at = profile[r + 1];
         const Vec3 plane = normalized(Vec3{at.normal_out, at.normal_y, 0});
@@ -54,7 +60,8 @@ void append_revolution(Mesh& mesh, std::span<const ProfilePoint> profile, int se
         }
         mesh.triangles.push_back({high, ring(rings - 1, s + 1), ring(rings - 1, s)});
     }
-    mesh.parts.push_back({material, first_triangle, static_cast<std::uint32_t>(mesh.triangles.size()) - first_triangle});
+    mesh.parts.push_back({material, first_triangle,
+                          static_cast<std::uint32_t>(mesh.triangles.size()) - first_triangle});
 }
 
 void sort_parts(Mesh& mesh) {

@@ -4,8 +4,8 @@
 namespace puppetri::figure {
 namespace {
 
-// The table below was made from sRGB bytes with linear_from_srgb; what matters is how the colours look beside each
-// other: muted mains of like lightness, dark neutral trousers, light shoes.
+// The table below was made from sRGB bytes with linear_from_srgb; what matters is how the colours
+// look beside each other: muted mains of like lightness, dark neutral trousers, light shoes.
 struct Row {
     std::string_view name;
     std::array<std::array<int, 3>, 5> srgb;  // main, second, accent, skin, hair
@@ -20,12 +20,13 @@ constexpr Row kRows[] = {
     {"sky", {{{84, 152, 210}, {56, 60, 74}, {240, 238, 232}, {126, 82, 60}, {26, 22, 22}}}},
     {"red", {{{206, 52, 46}, {244, 238, 226}, {40, 44, 52}, {230, 186, 154}, {70, 48, 36}}}},
     {"white", {{{232, 230, 224}, {66, 70, 80}, {210, 206, 198}, {226, 178, 146}, {58, 42, 36}}}},
-    {"clay", {{{206, 172, 140}, {196, 160, 128}, {184, 148, 116}, {212, 180, 150}, {186, 150, 118}}}},
+    {"clay",
+     {{{206, 172, 140}, {196, 160, 128}, {184, 148, 116}, {212, 180, 150}, {186, 150, 118}}}},
 };
 constexpr std::size_t kCount = sizeof(kRows) / sizeof(kRows[0]);
 
-// The sRGB curve, IEC 61966-2-1: ((c + 0.055) / 1.055)^2.4. The power is x^2 * x^0.4, and y = x^0.4 solves y^5 = x^2 by
-// Newton's method: no libm, the same bits everywhere.
+// The sRGB curve, IEC 61966-2-1: ((c + 0.055) / 1.055)^2.4. The power is x^2 * x^0.4, and y = x^0.4
+// solves y^5 = x^2 by Newton's method: no libm, the same bits everywhere.
 constexpr float linear(int byte) {
     const double c = byte / 255.0;
     if (c <= 0.04045) {
@@ -40,13 +41,16 @@ constexpr float linear(int byte) {
     return static_cast<float>(x * x * y);
 }
 
-constexpr Colour colour(const std::array<int, 3>& c) { return {linear(c[0]), linear(c[1]), linear(c[2])}; }
+constexpr Colour colour(const std::array<int, 3>& c) {
+    return {linear(c[0]), linear(c[1]), linear(c[2])};
+}
 
 constexpr std::array<Palette, kCount> make_palettes() {
     std::array<Palette, kCount> all{};
     for (std::size_t i = 0; i < kCount; ++i) {
         const auto& c = kRows[i].srgb;
-        all[i] = {kRows[i].name, colour(c[0]), colour(c[1]), colour(c[2]), colour(c[3]), colour(c[4])};
+        all[i] = {kRows[i].name, colour(c[0]), colour(c[1]),
+                  colour(c[2]),  colour(c[3]), colour(c[4])};
     }
     return all;
 }

@@ -17,7 +17,8 @@ std::array<float, 3> floats(Vec3 v) {
 }
 
 // A flat rectangle that looks up.
-void rectangle(Mesh& mesh, double x0, double x1, double z0, double z1, double y, std::uint32_t material) {
+void rectangle(Mesh& mesh, double x0, double x1, double z0, double z1, double y,
+               std::uint32_t material) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (const Vec3 p : {Vec3{x0, y, z0}, Vec3{x0, y, z1}, Vec3{x1, y, z1}, Vec3{x1, y, z0}}) {
         mesh.positions.push_back(floats(p));
@@ -33,10 +34,13 @@ void rectangle(Mesh& mesh, double x0, double x1, double z0, double z1, double y,
 
 Mesh make_ball_mesh(double diameter_m, const Palette& palette) {
     PUP_REQUIRE(diameter_m > 0);
-    constexpr std::uint32_t kRings = 24, kSectors = 48, kPanels = 6;  // rings between the poles: kRings - 1
+    constexpr std::uint32_t kRings = 24, kSectors = 48,
+                            kPanels = 6;  // rings between the poles: kRings - 1
     const double r = diameter_m / 2;
     Mesh mesh;
-    mesh.materials = {{"panel", palette.main, 0.35f, 0}, {"other panel", palette.second, 0.35f, 0}, {"cap", palette.accent, 0.35f, 0}};
+    mesh.materials = {{"panel", palette.main, 0.35f, 0},
+                      {"other panel", palette.second, 0.35f, 0},
+                      {"cap", palette.accent, 0.35f, 0}};
     std::array<double, kSectors> cosines{}, sines{};
     circle_points(kSectors, cosines, sines);
     const auto vertex = [&](Vec3 n) {
@@ -52,7 +56,9 @@ Mesh make_ball_mesh(double diameter_m, const Palette& palette) {
         }
     }
     vertex({0, 1, 0});
-    const auto at = [](std::uint32_t ring, std::uint32_t sector) { return 1 + (ring - 1) * kSectors + sector % kSectors; };
+    const auto at = [](std::uint32_t ring, std::uint32_t sector) {
+        return 1 + (ring - 1) * kSectors + sector % kSectors;
+    };
     const auto high = static_cast<std::uint32_t>(mesh.positions.size() - 1);
     const auto part = [&](std::uint32_t material) {
         mesh.parts.push_back({material, static_cast<std::uint32_t>(mesh.triangles.size()), 0});
@@ -81,7 +87,8 @@ Mesh make_ball_mesh(double diameter_m, const Palette& palette) {
                 band(i, k);
             }
         }
-        mesh.parts.back().triangle_count = static_cast<std::uint32_t>(mesh.triangles.size()) - mesh.parts.back().first_triangle;
+        mesh.parts.back().triangle_count =
+            static_cast<std::uint32_t>(mesh.triangles.size()) - mesh.parts.back().first_triangle;
     }
     sort_parts(mesh);
     return mesh;
@@ -93,10 +100,12 @@ Mesh make_box_mesh(Vec3 size_m, const Palette& palette) {
     mesh.materials = {{"box", palette.main, 0.6f, 0}, {"edges", palette.second, 0.6f, 0}};
     const Vec3 half = size_m * 0.5;
     const double bevel = 0.06 * std::min({size_m.x, size_m.y, size_m.z});
-    // Each corner of the box is three vertices, one on each of its faces, drawn in from the edges by the bevel. Faces,
-    // bevels and corner triangles then share no normals, and the box looks cut from wood.
+    // Each corner of the box is three vertices, one on each of its faces, drawn in from the edges
+    // by the bevel. Faces, bevels and corner triangles then share no normals, and the box looks cut
+    // from wood.
     const auto corner = [&](int sx, int sy, int sz, int face) {
-        return Vec3{sx * (half.x - (face == 0 ? 0 : bevel)), sy * (half.y - (face == 1 ? 0 : bevel)),
+        return Vec3{sx * (half.x - (face == 0 ? 0 : bevel)),
+                    sy * (half.y - (face == 1 ? 0 : bevel)),
                     sz * (half.z - (face == 2 ? 0 : bevel))};
     };
     const auto polygon = [&](std::span<const Vec3> p, Vec3 outwards) {
@@ -116,7 +125,8 @@ Mesh make_box_mesh(Vec3 size_m, const Palette& palette) {
         }
     };
     const auto component = [](int axis, int sign) {
-        return Vec3{axis == 0 ? 1.0 * sign : 0, axis == 1 ? 1.0 * sign : 0, axis == 2 ? 1.0 * sign : 0};
+        return Vec3{axis == 0 ? 1.0 * sign : 0, axis == 1 ? 1.0 * sign : 0,
+                    axis == 2 ? 1.0 * sign : 0};
     };
     const auto place = [&](int axis, int sign, int b, int sb, int sc, int face) {
         const int c = 3 - axis - b;
@@ -129,8 +139,9 @@ Mesh make_box_mesh(Vec3 size_m, const Palette& palette) {
     for (int axis = 0; axis < 3; ++axis) {
         const int b = (axis + 1) % 3;
         for (const int sign : {-1, 1}) {
-            const std::array<Vec3, 4> face{place(axis, sign, b, -1, -1, axis), place(axis, sign, b, 1, -1, axis),
-                                           place(axis, sign, b, 1, 1, axis), place(axis, sign, b, -1, 1, axis)};
+            const std::array<Vec3, 4> face{
+                place(axis, sign, b, -1, -1, axis), place(axis, sign, b, 1, -1, axis),
+                place(axis, sign, b, 1, 1, axis), place(axis, sign, b, -1, 1, axis)};
             polygon(face, component(axis, sign));
         }
     }
@@ -140,8 +151,9 @@ Mesh make_box_mesh(Vec3 size_m, const Palette& palette) {
         const int b = (axis + 1) % 3, c = (axis + 2) % 3;
         for (const int sb : {-1, 1}) {
             for (const int sc : {-1, 1}) {
-                const std::array<Vec3, 4> strip{place(axis, -1, b, sb, sc, b), place(axis, 1, b, sb, sc, b),
-                                                place(axis, 1, b, sb, sc, c), place(axis, -1, b, sb, sc, c)};
+                const std::array<Vec3, 4> strip{
+                    place(axis, -1, b, sb, sc, b), place(axis, 1, b, sb, sc, b),
+                    place(axis, 1, b, sb, sc, c), place(axis, -1, b, sb, sc, c)};
                 polygon(strip, component(b, sb) + component(c, sc));
             }
         }
@@ -149,12 +161,14 @@ Mesh make_box_mesh(Vec3 size_m, const Palette& palette) {
     for (const int sx : {-1, 1}) {
         for (const int sy : {-1, 1}) {
             for (const int sz : {-1, 1}) {
-                const std::array<Vec3, 3> tip{corner(sx, sy, sz, 0), corner(sx, sy, sz, 1), corner(sx, sy, sz, 2)};
+                const std::array<Vec3, 3> tip{corner(sx, sy, sz, 0), corner(sx, sy, sz, 1),
+                                              corner(sx, sy, sz, 2)};
                 polygon(tip, {1.0 * sx, 1.0 * sy, 1.0 * sz});
             }
         }
     }
-    mesh.parts.push_back({1, edges_from, static_cast<std::uint32_t>(mesh.triangles.size()) - edges_from});
+    mesh.parts.push_back(
+        {1, edges_from, static_cast<std::uint32_t>(mesh.triangles.size()) - edges_from});
     return mesh;
 }
 
@@ -182,7 +196,8 @@ Mesh make_road_mesh(double length_m, double width_m) {
 Mesh make_floor_mesh(double length_m, double width_m) {
     PUP_REQUIRE(length_m > 0 && width_m > 0);
     Mesh mesh;
-    mesh.materials = {{"floor", {0.47f, 0.445f, 0.41f}, 0.9f, 0}, {"grid", {0.33f, 0.33f, 0.33f}, 0.9f, 0}};
+    mesh.materials = {{"floor", {0.47f, 0.445f, 0.41f}, 0.9f, 0},
+                      {"grid", {0.33f, 0.33f, 0.33f}, 0.9f, 0}};
     const double w = width_m / 2, l = length_m / 2;
     constexpr double kAbove = 0.001, kThin = 0.006;
     rectangle(mesh, -w, w, -l, l, 0, 0);

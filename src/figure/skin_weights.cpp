@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+
 #include "puppetri/base/require.h"
 
 namespace puppetri::figure {
@@ -18,7 +19,7 @@ double ramp(double x, double centre, double half) {
 
 // Collects shares per joint; few joints share a point, so a short list is enough.
 class SkinWeights::Sum {
-   public:
+ public:
     void add(std::uint16_t joint, double weight) {
         if (weight <= 0) {
             return;
@@ -52,7 +53,7 @@ class SkinWeights::Sum {
         return out;
     }
 
-   private:
+ private:
     struct Item {
         std::uint16_t joint = 0;
         double weight = 0;
@@ -103,7 +104,8 @@ SkinWeights::SkinWeights(const Skeleton& skeleton, const Landmarks& marks) : mar
 SkinBinding SkinWeights::at(Vec3 p) const {
     const std::size_t s = p.x >= 0 ? 0 : 1;
     const double out = std::fabs(p.x);
-    // The arm begins at an oblique plane: further in on top of the shoulder than in the armpit, and not below it.
+    // The arm begins at an oblique plane: further in on top of the shoulder than in the armpit, and
+    // not below it.
     const Vec3 shoulder = marks_.shoulder[s];
     const double below = (shoulder.y - p.y);
     const double arm_share = ramp(out - std::fabs(shoulder.x), (0.012 + 0.25 * below), 0.065) *

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Which joints move a point of the skin, and how much. The rest pose is a T-pose, so that the body's chains lie along
-// the axes: weights are smooth steps of the place along a chain, as wide as the flesh at that joint is thick.
+// Which joints move a point of the skin, and how much. The rest pose is a T-pose, so that the
+// body's chains lie along the axes: weights are smooth steps of the place along a chain, as wide as
+// the flesh at that joint is thick.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,11 +16,11 @@ struct SkinBinding {
 };
 
 class SkinWeights {
-   public:
+ public:
     SkinWeights(const Skeleton& skeleton, const Landmarks& marks);
     SkinBinding at(Vec3 p_model) const;
 
-   private:
+ private:
     struct Side {
         std::uint16_t clavicle, upper_arm, upper_arm_twist, lower_arm, lower_arm_twist, hand;
         std::uint16_t upper_leg, lower_leg, foot, toes;

@@ -32,8 +32,12 @@ std::vector<ProfilePoint> ball(double radius_m, int rings) {
 // A rod along +Y from 0 to length, swelling a little near its root as bones of puppets do.
 std::vector<ProfilePoint> rod(double length_m, double radius_m) {
     const double r = radius_m, l = length_m;
-    return {{0, 0, 0, -1},         {0.55 * r, 0.02 * l, 1, -1}, {1.0 * r, 0.22 * l, 1, 0.02},
-            {0.62 * r, 0.85 * l, 1, 0.05}, {0.45 * r, 0.98 * l, 1, 1},  {0, l, 0, 1}};
+    return {{0, 0, 0, -1},
+            {0.55 * r, 0.02 * l, 1, -1},
+            {1.0 * r, 0.22 * l, 1, 0.02},
+            {0.62 * r, 0.85 * l, 1, 0.05},
+            {0.45 * r, 0.98 * l, 1, 1},
+            {0, l, 0, 1}};
 }
 
 }  // namespace
@@ -44,7 +48,9 @@ Mesh make_stick_mesh(const Skeleton& skeleton, const Palette& palette) {
     std::vector<Transform> model_from_joint(skeleton.joints.size());
     to_model_space(skeleton, rest_pose(skeleton), model_from_joint);
     Mesh mesh;
-    mesh.materials = {{"bones", palette.main, 0.6f, 0}, {"joints", palette.accent, 0.4f, 0}, {"head", palette.main, 0.6f, 0}};
+    mesh.materials = {{"bones", palette.main, 0.6f, 0},
+                      {"joints", palette.accent, 0.4f, 0},
+                      {"head", palette.main, 0.6f, 0}};
     constexpr std::uint32_t kBones = 0, kJoints = 1, kHead = 2;
     const auto left_out = [&](std::size_t j) {
         return !skeleton.joints[j].parent.valid() || ends_with(skeleton.joints[j].name, "Twist");
@@ -60,7 +66,8 @@ Mesh make_stick_mesh(const Skeleton& skeleton, const Palette& palette) {
         const bool thin = r < 0.006 * h;  // fingers are of one colour
         const Transform place{shortest_arc({0, 1, 0}, way * (1 / l), {1, 0, 0}), start};
         append_revolution(mesh, rod(l, r), kSectors, place, kBones, &joint);
-        append_revolution(mesh, ball(r * 1.12, 6), kSectors, {{}, start}, thin ? kBones : kJoints, &joint);
+        append_revolution(mesh, ball(r * 1.12, 6), kSectors, {{}, start}, thin ? kBones : kJoints,
+                          &joint);
     };
     for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
         const Joint& one = skeleton.joints[j];
@@ -71,7 +78,8 @@ Mesh make_stick_mesh(const Skeleton& skeleton, const Palette& palette) {
             // A head as a ball, with a nose that says where it looks.
             const auto joint = static_cast<std::uint16_t>(j);
             const double r = 0.42 * length(one.end_site_joint);
-            const Vec3 middle = model_from_joint[j].translation + Vec3{0, length(one.end_site_joint) - r, 0.01 * h};
+            const Vec3 middle =
+                model_from_joint[j].translation + Vec3{0, length(one.end_site_joint) - r, 0.01 * h};
             append_revolution(mesh, ball(r, 14), 24, {{}, middle}, kHead, &joint);
             const Transform nose{about_x(kPi / 2), middle + Vec3{0, -0.1 * r, 0.9 * r}};
             append_revolution(mesh, rod(0.5 * r, 0.22 * r), kSectors, nose, kJoints, &joint);

@@ -23,7 +23,8 @@ Diagnostics defect(std::string code, std::string message, std::string remedy) {
 Checked<FrameRange> checked_range(const stage::Performance& performance,
                                   const TakeOptions& options) {
     if (performance.actors().empty() && performance.props().empty()) {
-        return Unexpected(defect("nothing-to-show", "there are no figures and no props in this scene",
+        return Unexpected(defect("nothing-to-show",
+                                 "there are no figures and no props in this scene",
                                  "give it a cast; a net alone is shown by run and draw"));
     }
     const double rate = options.rate.per_second();

@@ -28,6 +28,7 @@ struct StepPlan {
 };
 
 StepPlan plan_step(const MotionContext& context, const StepSpec& spec);
-StepPlan plan_run(const MotionContext& context, const StepSpec& spec);  // below a duty factor of 0.5
+StepPlan plan_run(const MotionContext& context,
+                  const StepSpec& spec);  // below a duty factor of 0.5
 
 }  // namespace puppetri::motion

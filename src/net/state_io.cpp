@@ -405,7 +405,8 @@ Checked<State> read_state(const Net& net, std::span<const std::uint8_t> bytes) {
             const std::uint8_t bits = r.byte();
             token.ready = (bits & 1) != 0;
             token.serial = s.serials - r.count();
-            token.arrival = static_cast<std::int64_t>(static_cast<std::uint64_t>(s.now) - r.count());
+            token.arrival =
+                static_cast<std::int64_t>(static_cast<std::uint64_t>(s.now) - r.count());
             token.ready_at = (bits & 2) != 0 ? kNever : r.time_from(s.now);
             if ((bits & 4) != 0) {
                 token.activity = s.activities - r.below(std::uint64_t{s.activities} + 1);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The path of a camera: sampled, widened, smoothed.
 //
-// The middle of those kept in view is sampled 8 times a second and smoothed by a Gaussian of 0.7 s (it looks ahead, so
-// that there is no lag). A field of view is then chosen for the whole film, and where even that is not enough the
-// distance by which the camera must step back is taken as the largest need of the second around, smoothed: never less
-// than needed, never a jerk. Keys are control points of a uniform cubic B-spline, twice continuously differentiable.
+// The middle of those kept in view is sampled 8 times a second and smoothed by a Gaussian of 0.7 s
+// (it looks ahead, so that there is no lag). A field of view is then chosen for the whole film, and
+// where even that is not enough the distance by which the camera must step back is taken as the
+// largest need of the second around, smoothed: never less than needed, never a jerk. Keys are
+// control points of a uniform cubic B-spline, twice continuously differentiable.
 #include "puppetri/render/camera.h"
 
 #include <algorithm>
@@ -17,15 +18,16 @@ namespace {
 
 constexpr double kKeysPerSecond = 8;
 constexpr double kSmoothing_s = 0.7;
-constexpr double kMargin = 0.86;                             // of the half picture that those kept in view may use
+constexpr double kMargin = 0.86;  // of the half picture that those kept in view may use
 constexpr double kSmallestFov_rad = 0.209, kLargestFov_rad = 1.047;  // 12 and 60 degrees
 
 SimTime instant(double seconds) {
-    return {static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(kTicksPerSecond)))};
+    return {
+        static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(kTicksPerSecond)))};
 }
 
-// A Gaussian over the keys; beyond both ends the path goes on straight (odd reflection), so that a camera which travels
-// with walkers neither waits at the start nor at the end.
+// A Gaussian over the keys; beyond both ends the path goes on straight (odd reflection), so that a
+// camera which travels with walkers neither waits at the start nor at the end.
 template <class T>
 std::vector<T> smoothed(const std::vector<T>& keys, double sigma_keys) {
     const int n = static_cast<int>(keys.size());
@@ -64,7 +66,8 @@ Axes axes_towards(Vec3 eye, Vec3 target) {
 }
 
 Quat rotation_of(const Axes& a) {
-    // From a rotation matrix with columns right, up, back (Shepperd's method: the largest component first).
+    // From a rotation matrix with columns right, up, back (Shepperd's method: the largest component
+    // first).
     const double trace = a.right.x + a.up.y + a.back.z;
     Quat q;
     if (trace > 0) {
@@ -108,7 +111,8 @@ scene::Camera default_camera(const stage::Performance& performance) {
     Vec3 ahead;
     for (std::uint32_t a = 0; a < actors.size(); ++a) {
         performance.pose({a}, {}, pose);
-        ahead = ahead + rotate(pose.parent_from_joint[0].rotation, {0, 0, 1}) * (1.0 / static_cast<double>(actors.size()));
+        ahead = ahead + rotate(pose.parent_from_joint[0].rotation, {0, 0, 1}) *
+                            (1.0 / static_cast<double>(actors.size()));
     }
     Vec3 side;
     if (length(ahead) > 0.5) {  // they look one way: before them, a little aside
@@ -121,7 +125,8 @@ scene::Camera default_camera(const stage::Performance& performance) {
     return camera;
 }
 
-CameraPath::CameraPath(const scene::Camera& camera, const stage::Performance& performance, double aspect) {
+CameraPath::CameraPath(const scene::Camera& camera, const stage::Performance& performance,
+                       double aspect) {
     PUP_REQUIRE(aspect > 0);
     fov_rad_ = camera.fov_rad.value_or(0.61);
     const Vec3 ahead = camera.looking_at_world.value_or(camera.at_world + Vec3{0, 0, -1});
@@ -132,13 +137,15 @@ CameraPath::CameraPath(const scene::Camera& camera, const stage::Performance& pe
     const double duration_s = performance.duration().seconds();
     const int count = 2 + static_cast<int>(std::ceil(duration_s * kKeysPerSecond));
     std::vector<Vec3> middle;
-    std::vector<std::vector<Vec3>> bodies(static_cast<std::size_t>(count));  // points to keep in view
+    std::vector<std::vector<Vec3>> bodies(
+        static_cast<std::size_t>(count));  // points to keep in view
     figure::Pose pose;
     std::vector<Transform> world_from_joint;
     double height = 0;
     for (const stage::ActorIndex a : camera.keeps) {
         PUP_REQUIRE(a.value < performance.actors().size());
-        height += performance.actors()[a.value].skeleton->height_m / static_cast<double>(camera.keeps.size());
+        height += performance.actors()[a.value].skeleton->height_m /
+                  static_cast<double>(camera.keeps.size());
     }
     for (int k = 0; k < count; ++k) {
         const SimTime at = std::min(instant(k / kKeysPerSecond), performance.duration());
@@ -174,7 +181,9 @@ CameraPath::CameraPath(const scene::Camera& camera, const stage::Performance& pe
             for (const Vec3 p : bodies[k]) {
                 const Vec3 d = p - keys_[k].eye_world;
                 // Vertical extent is padded by flesh and hair around the joints.
-                use(k, std::max((std::fabs(dot(d, axes.right)) + 0.1) / aspect, std::fabs(dot(d, axes.up)) + 0.05),
+                use(k,
+                    std::max((std::fabs(dot(d, axes.right)) + 0.1) / aspect,
+                             std::fabs(dot(d, axes.up)) + 0.05),
                     -dot(d, axes.back));
             }
         }
@@ -187,17 +196,22 @@ CameraPath::CameraPath(const scene::Camera& camera, const stage::Performance& pe
         fov_rad_ = std::clamp(2 * half, kSmallestFov_rad, kLargestFov_rad);
     }
     const double slope = kMargin * std::tan(fov_rad_ / 2);
-    each_point([&](std::size_t k, double aside, double depth) { back[k] = std::max(back[k], aside / slope - depth); });
+    each_point([&](std::size_t k, double aside, double depth) {
+        back[k] = std::max(back[k], aside / slope - depth);
+    });
     const int around = static_cast<int>(kKeysPerSecond);
     std::vector<double> widest(back.size());
     for (int k = 0; k < count; ++k) {
         for (int i = std::max(0, k - around); i <= std::min(count - 1, k + around); ++i) {
-            widest[static_cast<std::size_t>(k)] = std::max(widest[static_cast<std::size_t>(k)], back[static_cast<std::size_t>(i)]);
+            widest[static_cast<std::size_t>(k)] =
+                std::max(widest[static_cast<std::size_t>(k)], back[static_cast<std::size_t>(i)]);
         }
     }
     widest = smoothed(widest, 0.35 * kKeysPerSecond);
     for (std::size_t k = 0; k < keys_.size(); ++k) {
-        keys_[k].eye_world = keys_[k].eye_world + axes_towards(keys_[k].eye_world, keys_[k].target_world).back * std::max(0.0, widest[k]);
+        keys_[k].eye_world =
+            keys_[k].eye_world +
+            axes_towards(keys_[k].eye_world, keys_[k].target_world).back * std::max(0.0, widest[k]);
     }
 }
 
@@ -206,15 +220,20 @@ View CameraPath::view(SimTime at) const {
     const double place = std::clamp(at.seconds() * kKeysPerSecond, 0.0, static_cast<double>(last));
     const int i = std::min(static_cast<int>(place), std::max(0, last - 1));
     const double t = place - i;
-    const std::array<double, 4> w{(1 - t) * (1 - t) * (1 - t) / 6, (3 * t * t * t - 6 * t * t + 4) / 6,
+    const std::array<double, 4> w{(1 - t) * (1 - t) * (1 - t) / 6,
+                                  (3 * t * t * t - 6 * t * t + 4) / 6,
                                   (-3 * t * t * t + 3 * t * t + 3 * t + 1) / 6, t * t * t / 6};
     Vec3 eye, target;
     for (int k = 0; k < 4; ++k) {
         // Beyond the ends the path goes on straight.
         const auto key = [&](auto member) {
             const int j = i + k - 1;
-            const auto value = [&](int n) { return keys_[static_cast<std::size_t>(std::clamp(n, 0, last))].*member; };
-            return j < 0 ? value(0) * 2 - value(1) : j > last ? value(last) * 2 - value(last - 1) : value(j);
+            const auto value = [&](int n) {
+                return keys_[static_cast<std::size_t>(std::clamp(n, 0, last))].*member;
+            };
+            return j < 0      ? value(0) * 2 - value(1)
+                   : j > last ? value(last) * 2 - value(last - 1)
+                              : value(j);
         };
         eye = eye + key(&Key::eye_world) * w[static_cast<std::size_t>(k)];
         target = target + key(&Key::target_world) * w[static_cast<std::size_t>(k)];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures drawn by several threads, handed over in order by the caller's. Each thread owns a PictureMaker; a ring of
-// slots keeps those that are ahead from running too far.
+// Pictures drawn by several threads, handed over in order by the caller's. Each thread owns a
+// PictureMaker; a ring of slots keeps those that are ahead from running too far.
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
@@ -15,9 +15,12 @@ namespace puppetri::render {
 namespace {
 
 class FilmShop {
-   public:
+ public:
     FilmShop(const RenderScene& scene, const FilmFormat& format, int threads)
-        : scene_(scene), format_(format), slots_(static_cast<std::size_t>(2 * threads)), next_(format.first_frame),
+        : scene_(scene),
+          format_(format),
+          slots_(static_cast<std::size_t>(2 * threads)),
+          next_(format.first_frame),
           handed_(format.first_frame) {}
 
     // Draws frames until there are none left or somebody stops.
@@ -50,7 +53,8 @@ class FilmShop {
 
     FilmStatus hand_over(FrameSink& sink) {
         FilmStatus status = Ok{};
-        for (std::int64_t frame = format_.first_frame; frame <= format_.last_frame && status; ++frame) {
+        for (std::int64_t frame = format_.first_frame; frame <= format_.last_frame && status;
+             ++frame) {
             Slot& slot = slot_of(frame);
             {
                 std::unique_lock lock(mutex_);
@@ -67,13 +71,14 @@ class FilmShop {
         return status;
     }
 
-   private:
+ private:
     struct Slot {
         Picture picture;
         std::int64_t frame = -1;  // which is in it, finished
     };
     Slot& slot_of(std::int64_t frame) {
-        return slots_[static_cast<std::size_t>((frame - format_.first_frame) % static_cast<std::int64_t>(slots_.size()))];
+        return slots_[static_cast<std::size_t>((frame - format_.first_frame) %
+                                               static_cast<std::int64_t>(slots_.size()))];
     }
 
     const RenderScene& scene_;
@@ -89,9 +94,11 @@ class FilmShop {
 
 FilmStatus draw_film(const RenderScene& scene, const FilmFormat& format, FrameSink& sink) {
     PUP_REQUIRE(format.first_frame >= 0 && format.first_frame <= format.last_frame);
-    const auto machine = static_cast<std::int64_t>(std::max(1u, std::thread::hardware_concurrency()));
+    const auto machine =
+        static_cast<std::int64_t>(std::max(1u, std::thread::hardware_concurrency()));
     const std::int64_t wanted = format.threads > 0 ? format.threads : machine;
-    const int threads = static_cast<int>(std::min(wanted, format.last_frame - format.first_frame + 1));
+    const int threads =
+        static_cast<int>(std::min(wanted, format.last_frame - format.first_frame + 1));
     FilmShop shop(scene, format, threads);
     std::vector<std::thread> team;
     for (int i = 0; i < threads; ++i) {

@@ -8,16 +8,19 @@ namespace {
 
 constexpr int kGradientSteps = 512, kAzimuths = 4096;
 constexpr float kPi_f = 3.14159265f;
-constexpr Float3 kZenith{0.07f, 0.21f, 0.52f}, kMiddle{0.20f, 0.45f, 0.86f}, kHorizon{0.70f, 0.87f, 1.0f};
+constexpr Float3 kZenith{0.07f, 0.21f, 0.52f}, kMiddle{0.20f, 0.45f, 0.86f},
+    kHorizon{0.70f, 0.87f, 1.0f};
 constexpr Float3 kWarm{1.0f, 0.80f, 0.58f};
-constexpr Float3 kFarHill{0.44f, 0.60f, 0.74f}, kNearHill{0.30f, 0.45f, 0.42f}, kMeadowHaze{0.46f, 0.58f, 0.52f};
+constexpr Float3 kFarHill{0.44f, 0.60f, 0.74f}, kNearHill{0.30f, 0.45f, 0.42f},
+    kMeadowHaze{0.46f, 0.58f, 0.52f};
 constexpr Float3 kFloorHaze{0.96f, 1.02f, 1.08f};
 
 // atan2 to 0.0002 rad, enough to look up hills.
 float azimuth(float x, float z) {
     const float ax = std::fabs(x), az = std::fabs(z);
     const float t = std::min(ax, az) / std::max(std::max(ax, az), 1e-9f), s = t * t;
-    float a = t * (0.9998660f + s * (-0.3302995f + s * (0.1801410f + s * (-0.0851330f + s * 0.0208351f))));
+    float a = t * (0.9998660f +
+                   s * (-0.3302995f + s * (0.1801410f + s * (-0.0851330f + s * 0.0208351f))));
     a = ax > az ? kPi_f / 2 - a : a;
     a = z < 0 ? kPi_f - a : a;
     return x < 0 ? -a : a;
@@ -44,10 +47,12 @@ Environment::Environment(Vec3 to_sun_world, std::span<const stage::Set> sets)
     // Sums of sines, so that the chains close around.
     for (int i = 0; i <= kAzimuths; ++i) {
         const float a = 2 * kPi_f * static_cast<float>(i) / kAzimuths;
-        hills_.push_back({0.034f + 0.011f * std::sin(3 * a + 0.6f) + 0.007f * std::sin(7 * a + 2.1f) +
-                              0.0026f * std::sin(17 * a + 0.4f) + 0.0011f * std::sin(41 * a),
-                          0.014f + 0.006f * std::sin(5 * a + 1.9f) + 0.0035f * std::sin(11 * a + 0.3f) +
-                              0.0015f * std::sin(29 * a + 1.0f) + 0.0008f * std::sin(83 * a) + 0.0005f * std::sin(211 * a)});
+        hills_.push_back(
+            {0.034f + 0.011f * std::sin(3 * a + 0.6f) + 0.007f * std::sin(7 * a + 2.1f) +
+                 0.0026f * std::sin(17 * a + 0.4f) + 0.0011f * std::sin(41 * a),
+             0.014f + 0.006f * std::sin(5 * a + 1.9f) + 0.0035f * std::sin(11 * a + 0.3f) +
+                 0.0015f * std::sin(29 * a + 1.0f) + 0.0008f * std::sin(83 * a) +
+                 0.0005f * std::sin(211 * a)});
     }
 }
 
@@ -64,7 +69,8 @@ Float3 Environment::sky(Float3 d) const {
     const auto i = static_cast<std::size_t>(std::min(static_cast<int>(at), kGradientSteps - 1));
     Float3 light = mix(gradient_[i], gradient_[i + 1], at - static_cast<float>(i));
     const float towards = std::max(0.0f, dot(d, to_sun_));
-    const float t2 = towards * towards, t8 = t2 * t2 * t2 * t2, t64 = t8 * t8 * t8 * t8 * t8 * t8 * t8 * t8;
+    const float t2 = towards * towards, t8 = t2 * t2 * t2 * t2,
+                t64 = t8 * t8 * t8 * t8 * t8 * t8 * t8 * t8;
     light = light + kWarm * (0.08f * t8 + 0.25f * t64);
     if (!road_) {
         return mix(kFloorHaze, light, smooth_step(0.0f, 0.16f, d.y));
@@ -72,12 +78,16 @@ Float3 Environment::sky(Float3 d) const {
     if (d.y < 0.07f) {
         const float rise = d.y / std::sqrt(std::max(1e-6f, d.x * d.x + d.z * d.z));
         const float turn = (azimuth(d.x, d.z) / (2 * kPi_f) + 0.5f) * kAzimuths;
-        const auto k = static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kAzimuths - 1));
+        const auto k =
+            static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kAzimuths - 1));
         const float part = turn - static_cast<float>(k);
-        const float far = mix(hills_[k][0], hills_[k + 1][0], part), near = mix(hills_[k][1], hills_[k + 1][1], part);
+        const float far = mix(hills_[k][0], hills_[k + 1][0], part),
+                    near = mix(hills_[k][1], hills_[k + 1][1], part);
         constexpr float kSoft = 0.0009f;
-        light = mix(light, mix(kHorizon, kFarHill, smooth_step(-0.01f, 0.035f, rise)), 0.9f * smooth_step(-kSoft, kSoft, far - rise));
-        light = mix(light, mix(kMeadowHaze, kNearHill, smooth_step(0.0f, 0.014f, rise)), smooth_step(-kSoft, kSoft, near - rise));
+        light = mix(light, mix(kHorizon, kFarHill, smooth_step(-0.01f, 0.035f, rise)),
+                    0.9f * smooth_step(-kSoft, kSoft, far - rise));
+        light = mix(light, mix(kMeadowHaze, kNearHill, smooth_step(0.0f, 0.014f, rise)),
+                    smooth_step(-kSoft, kSoft, near - rise));
     }
     return light;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is around the figures and needs no rays: the sky with far hills, the sun, haze, and the ground.
+// What is around the figures and needs no rays: the sky with far hills, the sun, haze, and the
+// ground.
 #pragma once
 #include <array>
 #include <span>
@@ -12,11 +13,13 @@
 namespace puppetri::render {
 
 class Environment {
-   public:
+ public:
     Environment(Vec3 to_sun_world, std::span<const stage::Set> sets);
 
     Float3 to_sun() const { return to_sun_; }
-    Float3 sun() const { return {3.35f, 3.0f, 2.5f}; }  // light that a white surface facing it sends back
+    Float3 sun() const {
+        return {3.35f, 3.0f, 2.5f};
+    }  // light that a white surface facing it sends back
     // Light from the hemisphere around a normal, from the sky above and the ground below.
     Float3 ambient(Float3 normal) const;
 
@@ -27,12 +30,12 @@ class Environment {
     // Light after a way through the haze.
     Float3 haze(Float3 light, float distance_m) const;
 
-   private:
+ private:
     Float3 to_sun_;
     bool road_ = false;
     float centre_x_ = 0, centre_z_ = 0, along_x_ = 0, along_z_ = 1;
-    std::vector<Float3> gradient_;                 // of the sky by the sine of elevation, 0 to 1
-    std::vector<std::array<float, 2>> hills_;      // heights of two chains as slopes, by azimuth
+    std::vector<Float3> gradient_;             // of the sky by the sine of elevation, 0 to 1
+    std::vector<std::array<float, 2>> hills_;  // heights of two chains as slopes, by azimuth
     Ground ground_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The program ffmpeg at the end of a pipe. Video goes in as planar YUV that is made here (BT.709, as players assume for
-// films of this size), pictures for .gif and .apng as RGB. What ffmpeg says is kept and shown when it fails.
+// The program ffmpeg at the end of a pipe. Video goes in as planar YUV that is made here (BT.709,
+// as players assume for films of this size), pictures for .gif and .apng as RGB. What ffmpeg says
+// is kept and shown when it fails.
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -44,7 +45,8 @@ void to_yuv(const Picture& in, int width, int height, std::vector<std::uint8_t>&
     for (std::size_t y = 0; y < h; ++y) {
         const std::uint8_t* p = in.rgb.data() + y * stride;
         for (std::size_t x = 0; x < w; ++x, p += 3) {
-            luma[y * w + x] = static_cast<std::uint8_t>((11966 * p[0] + 40254 * p[1] + 4064 * p[2] + (16 << 16) + 32768) >> 16);
+            luma[y * w + x] = static_cast<std::uint8_t>(
+                (11966 * p[0] + 40254 * p[1] + 4064 * p[2] + (16 << 16) + 32768) >> 16);
         }
     }
     std::uint8_t* blue = luma + w * h;
@@ -55,8 +57,10 @@ void to_yuv(const Picture& in, int width, int height, std::vector<std::uint8_t>&
             const int r = p[0] + p[3] + p[stride] + p[stride + 3];
             const int g = p[1] + p[4] + p[stride + 1] + p[stride + 4];
             const int b = p[2] + p[5] + p[stride + 2] + p[stride + 5];
-            blue[y * (w / 2) + x] = static_cast<std::uint8_t>((-6596 * r - 22189 * g + 28785 * b + (128 << 18) + 131072) >> 18);
-            red[y * (w / 2) + x] = static_cast<std::uint8_t>((28785 * r - 26145 * g - 2640 * b + (128 << 18) + 131072) >> 18);
+            blue[y * (w / 2) + x] = static_cast<std::uint8_t>(
+                (-6596 * r - 22189 * g + 28785 * b + (128 << 18) + 131072) >> 18);
+            red[y * (w / 2) + x] = static_cast<std::uint8_t>(
+                (28785 * r - 26145 * g - 2640 * b + (128 << 18) + 131072) >> 18);
         }
     }
 }
@@ -68,14 +72,21 @@ struct Codec {
 
 bool find_codec(std::string_view ending, Codec& out) {
     if (ending == ".mp4") {
-        out = {true, {"-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-color_range", "tv",
-                      "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart", "-f", "mp4"}};
+        out = {true, {"-c:v",        "libx264",   "-preset",          "veryfast",     "-crf",
+                      "20",          "-pix_fmt",  "yuv420p",          "-color_range", "tv",
+                      "-colorspace", "bt709",     "-color_primaries", "bt709",        "-color_trc",
+                      "bt709",       "-movflags", "+faststart",       "-f",           "mp4"}};
     } else if (ending == ".webm") {
-        out = {true, {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "6", "-row-mt", "1", "-crf", "32", "-b:v",
-                      "0", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-f", "webm"}};
+        out = {true,
+               {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "6", "-row-mt", "1",
+                "-crf", "32", "-b:v", "0", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-f",
+                "webm"}};
     } else if (ending == ".gif") {
-        out = {false, {"-filter_complex", "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=5:diff_mode=rectangle",
-                       "-loop", "0", "-f", "gif"}};
+        out = {false,
+               {"-filter_complex",
+                "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_"
+                "scale=5:diff_mode=rectangle",
+                "-loop", "0", "-f", "gif"}};
     } else if (ending == ".apng") {
         out = {false, {"-c:v", "apng", "-pred", "mixed", "-plays", "0", "-f", "apng"}};
     } else {
@@ -143,34 +154,54 @@ struct FfmpegSink::Data {
     }
 
     FilmError failure(std::string message) {
-        return {std::move(message), "see what ffmpeg says; is there room on the disk, and may the file be written?", said};
+        return {std::move(message),
+                "see what ffmpeg says; is there room on the disk, and may the file be written?",
+                said};
     }
 };
 
 FfmpegSink::FfmpegSink(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 FfmpegSink::~FfmpegSink() = default;
 
-Result<std::unique_ptr<FfmpegSink>, FilmError> FfmpegSink::start(const FilmFormat& format, const std::string& file,
+Result<std::unique_ptr<FfmpegSink>, FilmError> FfmpegSink::start(const FilmFormat& format,
+                                                                 const std::string& file,
                                                                  std::string_view ending) {
     Codec codec;
     if (!find_codec(ending, codec)) {
         return Unexpected(FilmError{"there is no film of the kind '" + std::string(ending) + "'",
-                                    "choose a name that ends in .mp4, .webm, .gif, .apng or .png", ""});
+                                    "choose a name that ends in .mp4, .webm, .gif, .apng or .png",
+                                    ""});
     }
     const std::string program = path_of_ffmpeg();
     if (program.empty()) {
-        return Unexpected(FilmError{"there is no program ffmpeg", "install it (on Debian: apt-get install ffmpeg), or "
-                                    "ask for pictures (-o frames/%04d.png)", ""});
+        return Unexpected(FilmError{"there is no program ffmpeg",
+                                    "install it (on Debian: apt-get install ffmpeg), or "
+                                    "ask for pictures (-o frames/%04d.png)",
+                                    ""});
     }
     auto data = std::make_unique<Data>();
     data->yuv = codec.yuv;
     data->width = codec.yuv ? format.width & ~1 : format.width;
     data->height = codec.yuv ? format.height & ~1 : format.height;
     const std::string size = std::to_string(data->width) + "x" + std::to_string(data->height);
-    const std::string rate = std::to_string(format.rate.numerator) + "/" + std::to_string(format.rate.denominator);
-    std::vector<std::string> words{program, "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo",
-                                   "-pixel_format", codec.yuv ? "yuv420p" : "rgb24", "-video_size", size, "-framerate", rate,
-                                   "-i", "pipe:0"};
+    const std::string rate =
+        std::to_string(format.rate.numerator) + "/" + std::to_string(format.rate.denominator);
+    std::vector<std::string> words{program,
+                                   "-hide_banner",
+                                   "-loglevel",
+                                   "error",
+                                   "-nostdin",
+                                   "-y",
+                                   "-f",
+                                   "rawvideo",
+                                   "-pixel_format",
+                                   codec.yuv ? "yuv420p" : "rgb24",
+                                   "-video_size",
+                                   size,
+                                   "-framerate",
+                                   rate,
+                                   "-i",
+                                   "pipe:0"};
     words.insert(words.end(), codec.options.begin(), codec.options.end());
     words.push_back("file:" + file);
     std::vector<char*> arguments;
@@ -181,12 +212,14 @@ Result<std::unique_ptr<FfmpegSink>, FilmError> FfmpegSink::start(const FilmForma
 
     int in[2], err[2];
     if (pipe2(in, O_CLOEXEC) != 0) {
-        return Unexpected(FilmError{std::string("no pipe to ffmpeg: ") + std::strerror(errno), "close other programs", ""});
+        return Unexpected(FilmError{std::string("no pipe to ffmpeg: ") + std::strerror(errno),
+                                    "close other programs", ""});
     }
     if (pipe2(err, O_CLOEXEC) != 0) {
         close(in[0]);
         close(in[1]);
-        return Unexpected(FilmError{std::string("no pipe to ffmpeg: ") + std::strerror(errno), "close other programs", ""});
+        return Unexpected(FilmError{std::string("no pipe to ffmpeg: ") + std::strerror(errno),
+                                    "close other programs", ""});
     }
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -203,7 +236,8 @@ Result<std::unique_ptr<FfmpegSink>, FilmError> FfmpegSink::start(const FilmForma
     sigaddset(&defaults, SIGPIPE);
     sigaddset(&defaults, SIGINT);
     posix_spawnattr_setsigdefault(&attributes, &defaults);
-    const int failed = posix_spawn(&data->process, program.c_str(), &actions, &attributes, arguments.data(), environ);
+    const int failed = posix_spawn(&data->process, program.c_str(), &actions, &attributes,
+                                   arguments.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     close(in[0]);
@@ -212,7 +246,8 @@ Result<std::unique_ptr<FfmpegSink>, FilmError> FfmpegSink::start(const FilmForma
     data->from_program = err[0];
     if (failed != 0) {
         data->process = -1;
-        return Unexpected(FilmError{std::string("ffmpeg does not start: ") + std::strerror(failed), "try " + program, ""});
+        return Unexpected(FilmError{std::string("ffmpeg does not start: ") + std::strerror(failed),
+                                    "try " + program, ""});
     }
     fcntl(data->from_program, F_SETFL, O_NONBLOCK);
     fcntl(data->to_program, F_SETFL, O_NONBLOCK);
@@ -241,7 +276,8 @@ FilmStatus FfmpegSink::frame(std::int64_t, const Picture& picture) {
             bytes += put;
             left -= static_cast<std::size_t>(put);
         } else if (errno == EAGAIN) {
-            // Waits for room, and listens meanwhile: a program that nobody listens to may stand still.
+            // Waits for room, and listens meanwhile: a program that nobody listens to may stand
+            // still.
             std::array<pollfd, 2> both{{{d.to_program, POLLOUT, 0}, {d.from_program, POLLIN, 0}}};
             poll(both.data(), both.size(), 1000);
             if (both[1].revents != 0) {
@@ -268,7 +304,8 @@ FilmStatus FfmpegSink::finish() {
     // When only the last bytes found no room, ffmpeg 5.1 complains and yet answers 0.
     const int status = data_->end(false);
     const std::string& said = data_->said;
-    if (status != 0 || said.find("rror") != std::string::npos || said.find("No space") != std::string::npos) {
+    if (status != 0 || said.find("rror") != std::string::npos ||
+        said.find("No space") != std::string::npos) {
         return Unexpected(data_->failure("ffmpeg could not finish the film"));
     }
     return Ok{};

@@ -17,7 +17,9 @@ inline Float3 operator-(Float3 a, Float3 b) { return {a.x - b.x, a.y - b.y, a.z 
 inline Float3 operator*(Float3 a, float s) { return {a.x * s, a.y * s, a.z * s}; }
 inline Float3 operator*(Float3 a, Float3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 inline float dot(Float3 a, Float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Float3 cross(Float3 a, Float3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+inline Float3 cross(Float3 a, Float3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline Float3 normalized(Float3 a) {
     const float n = dot(a, a);
     return n > 0 ? a * (1 / std::sqrt(n)) : Float3{0, 1, 0};

@@ -68,9 +68,11 @@ PUP_INLINE void read(const GrainTile& tile, int taps, const GroundPoints& p, Lan
     for (int tap = 0; tap < taps; ++tap) {
         const float off = static_cast<float>(tap) + 0.5f - static_cast<float>(taps) / 2;
         for (int i = 0; i < kPack; ++i) {
-            // Levels follow each other: 4^9, 4^8, .. texels; level l starts at (4^10 - 4^(10 - l)) / 3.
+            // Levels follow each other: 4^9, 4^8, .. texels; level l starts at (4^10 - 4^(10 - l))
+            // / 3.
             const std::int32_t shift = GrainTile::kLevels - 1 - level[i], mask = (1 << shift) - 1;
-            const std::int32_t start = ((1 << (2 * GrainTile::kLevels)) - (1 << (2 * shift + 2))) / 3;
+            const std::int32_t start =
+                ((1 << (2 * GrainTile::kLevels)) - (1 << (2 * shift + 2))) / 3;
             const auto side = static_cast<float>(1 << shift);
             const float x = (p.x[i] + off * part_x[i]) * tile.tiles_per_metre * side - 0.5f;
             const float z = (p.z[i] + off * part_z[i]) * tile.tiles_per_metre * side - 0.5f;
@@ -90,8 +92,8 @@ PUP_INLINE void read(const GrainTile& tile, int taps, const GroundPoints& p, Lan
     }
 }
 
-PUP_CLONES void road_colours(const GrainTile& fine, const GrainTile& coarse, const GrainTile& wide, float half_width,
-                             const GroundPoints& p, Colours8& out) {
+PUP_CLONES void road_colours(const GrainTile& fine, const GrainTile& coarse, const GrainTile& wide,
+                             float half_width, const GroundPoints& p, Colours8& out) {
     Lanes8 grain, tufts, fields;
     read(fine, 3, p, grain);
     read(coarse, 2, p, tufts);
@@ -111,13 +113,16 @@ PUP_CLONES void road_colours(const GrainTile& fine, const GrainTile& coarse, con
         lane = (lane < 0 ? -lane : lane) - 0.75f;
         const float beside = in_unit(((lane < 0 ? -lane : lane) - 0.25f) / 0.5f);
         const float polish = 1 + 0.10f * (1 - beside * beside * (3 - 2 * beside));
-        const float centre = covered(-0.06f, 0.06f, x, wx) * covered_periodic(4, 1.6f, p.z[i] + 0.8f, wz);
+        const float centre =
+            covered(-0.06f, 0.06f, x, wx) * covered_periodic(4, 1.6f, p.z[i] + 0.8f, wz);
         const float edge = covered(half_width - 0.34f, half_width - 0.22f, aside, wx);
         const float paint = in_unit(most(centre, edge) * (0.53f + 0.35f * tone));
         const float tar = 0.108f * tone * polish * (1 - paint) + 0.65f * paint;
-        const float green_r = (0.072f + 0.093f * dry) * blades, green_g = (0.150f + 0.035f * dry) * blades,
+        const float green_r = (0.072f + 0.093f * dry) * blades,
+                    green_g = (0.150f + 0.035f * dry) * blades,
                     green_b = (0.030f + 0.025f * dry) * blades;
-        const float side_r = green_r + (0.270f * stones - green_r) * gravel, side_g = green_g + (0.245f * stones - green_g) * gravel,
+        const float side_r = green_r + (0.270f * stones - green_r) * gravel,
+                    side_g = green_g + (0.245f * stones - green_g) * gravel,
                     side_b = green_b + (0.205f * stones - green_b) * gravel;
         out.r[i] = side_r + (0.975f * tar + 0.016f * paint - side_r) * asphalt;
         out.g[i] = side_g + (tar - side_g) * asphalt;
@@ -125,15 +130,19 @@ PUP_CLONES void road_colours(const GrainTile& fine, const GrainTile& coarse, con
     }
 }
 
-PUP_CLONES void floor_colours(const GrainTile& fine, const GrainTile& coarse, const GroundPoints& p, Colours8& out) {
+PUP_CLONES void floor_colours(const GrainTile& fine, const GrainTile& coarse, const GroundPoints& p,
+                              Colours8& out) {
     Lanes8 grain, tufts;
     read(fine, 2, p, grain);
     read(coarse, 1, p, tufts);
     for (int i = 0; i < kPack; ++i) {
-        const float x = p.x[i], z = p.z[i], wx = most(p.width_x[i], 1e-4f), wz = most(p.width_z[i], 1e-4f);
+        const float x = p.x[i], z = p.z[i], wx = most(p.width_x[i], 1e-4f),
+                    wz = most(p.width_z[i], 1e-4f);
         const float tone = 1 + 0.10f * tufts[i] + 0.05f * grain[i];
-        const float thin = most(covered_periodic(1, 0.012f, x + 0.006f, wx), covered_periodic(1, 0.012f, z + 0.006f, wz));
-        const float thick = most(covered_periodic(5, 0.03f, x + 0.015f, wx), covered_periodic(5, 0.03f, z + 0.015f, wz));
+        const float thin = most(covered_periodic(1, 0.012f, x + 0.006f, wx),
+                                covered_periodic(1, 0.012f, z + 0.006f, wz));
+        const float thick = most(covered_periodic(5, 0.03f, x + 0.015f, wx),
+                                 covered_periodic(5, 0.03f, z + 0.015f, wz));
         const float line = least(1.0f, 0.35f * thin + 0.4f * thick);
         out.r[i] = 0.36f * tone * (1 - line) + 0.17f * line;
         out.g[i] = 0.345f * tone * (1 - line) + 0.19f * line;
@@ -143,7 +152,8 @@ PUP_CLONES void floor_colours(const GrainTile& fine, const GrainTile& coarse, co
 
 }  // namespace
 
-GrainTile::GrainTile(float tile_m, std::initializer_list<Octave> octaves, std::uint32_t seed) : tiles_per_metre(1 / tile_m) {
+GrainTile::GrainTile(float tile_m, std::initializer_list<Octave> octaves, std::uint32_t seed)
+    : tiles_per_metre(1 / tile_m) {
     std::vector<float> values(static_cast<std::size_t>(kSide) * kSide, 0.0f);
     float strongest = 0;
     for (const Octave& octave : octaves) {
@@ -161,7 +171,8 @@ GrainTile::GrainTile(float tile_m, std::initializer_list<Octave> octaves, std::u
                 const std::uint32_t x1 = (x + 1) % cells, z1 = (z + 1) % cells;
                 const float low = hash(x, z, seed) * (1 - u) + hash(x1, z, seed) * u;
                 const float high = hash(x, z1, seed) * (1 - u) + hash(x1, z1, seed) * u;
-                values[static_cast<std::size_t>(i * kSide + k)] += octave.strength * (low * (1 - v) + high * v - 0.5f);
+                values[static_cast<std::size_t>(i * kSide + k)] +=
+                    octave.strength * (low * (1 - v) + high * v - 0.5f);
             }
         }
     }
@@ -174,7 +185,8 @@ GrainTile::GrainTile(float tile_m, std::initializer_list<Octave> octaves, std::u
         float extreme = 0;
         for (std::size_t i = 0; i < side; ++i) {
             for (std::size_t k = 0; k < side; ++k) {
-                texels.push_back(byte(i, k) | byte(i, k + 1) << 8 | byte(i + 1, k) << 16 | byte(i + 1, k + 1) << 24);
+                texels.push_back(byte(i, k) | byte(i, k + 1) << 8 | byte(i + 1, k) << 16 |
+                                 byte(i + 1, k + 1) << 24);
                 extreme = std::max(extreme, std::abs(values[i * side + k]));
             }
         }
@@ -193,7 +205,9 @@ GrainTile::GrainTile(float tile_m, std::initializer_list<Octave> octaves, std::u
 }
 
 Ground::Ground(bool road, float width_m)
-    : road_(road), half_width_(width_m / 2), fine_(3.0f, {{128, 0.55f}, {256, 0.6f}, {40, 0.25f}}, 1),
+    : road_(road),
+      half_width_(width_m / 2),
+      fine_(3.0f, {{128, 0.55f}, {256, 0.6f}, {40, 0.25f}}, 1),
       coarse_(19.0f, {{12, 0.45f}, {31, 0.4f}, {83, 0.35f}, {190, 0.35f}}, 11),
       wide_(170.0f, {{9, 0.6f}, {23, 0.5f}, {61, 0.4f}}, 23) {}
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Eight pixels side by side. Loops over lanes without branches become vector code; PUP_CLONES has a function compiled for
-// newer processors too, chosen when the program starts.
+// Eight pixels side by side. Loops over lanes without branches become vector code; PUP_CLONES has a
+// function compiled for newer processors too, chosen when the program starts.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,7 +19,8 @@ struct Colours8 {
 
 }  // namespace puppetri::render
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define PUP_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define PUP_CLONES

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Drawing one picture. Rays are spent only where something can be met: tiles of the picture that a projected triangle
-// touches get primary rays, tiles that its shadow on the ground touches get shadow rays; sky and ground are formulas.
-// Pixels where neighbours disagree (outlines, rims of shadows) get more samples afterwards.
+// Drawing one picture. Rays are spent only where something can be met: tiles of the picture that a
+// projected triangle touches get primary rays, tiles that its shadow on the ground touches get
+// shadow rays; sky and ground are formulas. Pixels where neighbours disagree (outlines, rims of
+// shadows) get more samples afterwards.
 #include "puppetri/render/picture.h"
 
 #include <algorithm>
@@ -28,9 +29,9 @@ struct Object {
     const figure::Mesh* mesh = nullptr;
     std::uint32_t traced = 0;  // number in the tracer
     std::vector<std::array<float, 3>> normals_world;
-    std::vector<float> light;              // ambient, per vertex
+    std::vector<float> light;                // ambient, per vertex
     std::vector<std::uint16_t> material_of;  // per triangle
-    std::uint16_t first_id = 0;            // ids of its materials follow each other
+    std::uint16_t first_id = 0;              // ids of its materials follow each other
     std::vector<Sphere> spheres;
     FloorShade floor;
 };
@@ -53,15 +54,22 @@ namespace {
 
 // Over the photographer's left shoulder, so that faces are lit and shadows fall aside and back.
 Vec3 sun_over_the_shoulder(const View& view) {
-    const Vec3 back = rotate(view.world_from_camera.rotation, {0, 0, 1}), left = rotate(view.world_from_camera.rotation, {-1, 0, 0});
-    const Vec3 level = normalized(Vec3{back.x, 0, back.z}, {0, 0, 1}) * 0.61 + normalized(Vec3{left.x, 0, left.z}, {-1, 0, 0}) * 0.79;
+    const Vec3 back = rotate(view.world_from_camera.rotation, {0, 0, 1}),
+               left = rotate(view.world_from_camera.rotation, {-1, 0, 0});
+    const Vec3 level = normalized(Vec3{back.x, 0, back.z}, {0, 0, 1}) * 0.61 +
+                       normalized(Vec3{left.x, 0, left.z}, {-1, 0, 0}) * 0.79;
     return normalized(level) * 0.68 + Vec3{0, 0.74, 0};
 }
 
 }  // namespace
 
 struct PictureMaker::Data {
-    Data(const RenderScene& s, int w, int h) : scene(s), width(w), height(h), environment(s.look.to_sun_world.value_or(sun_over_the_shoulder(s.camera->view({}))), s.sets) {}
+    Data(const RenderScene& s, int w, int h)
+        : scene(s),
+          width(w),
+          height(h),
+          environment(s.look.to_sun_world.value_or(sun_over_the_shoulder(s.camera->view({}))),
+                      s.sets) {}
 
     RenderScene scene;
     int width, height, tiles_x = 0, tiles_y = 0;
@@ -75,8 +83,9 @@ struct PictureMaker::Data {
     std::vector<Transform> world_from_joint;
     figure::Pose pose;
     Eye eye;
-    std::vector<std::uint8_t> seen, shaded;  // per tile: may a primary ray, a shadow ray from the ground, meet anything
-    std::vector<Float3> light;               // per pixel
+    std::vector<std::uint8_t> seen,
+        shaded;  // per tile: may a primary ray, a shadow ray from the ground, meet anything
+    std::vector<Float3> light;  // per pixel
     std::vector<float> depth;
     std::vector<std::uint16_t> ids;
     std::vector<std::uint8_t> sunlit;  // per pixel of the ground: 1 in the sun
@@ -94,8 +103,10 @@ struct PictureMaker::Data {
                 o.material_of[part.first_triangle + t] = static_cast<std::uint16_t>(part.material);
             }
         }
-        o.first_id = objects.empty() ? kFirstMeshId
-                                     : static_cast<std::uint16_t>(objects.back().first_id + objects.back().mesh->materials.size());
+        o.first_id = objects.empty()
+                         ? kFirstMeshId
+                         : static_cast<std::uint16_t>(objects.back().first_id +
+                                                      objects.back().mesh->materials.size());
         objects.push_back(std::move(o));
         shades.emplace_back(*mesh);
     }
@@ -103,13 +114,15 @@ struct PictureMaker::Data {
     void pose_all(SimTime at);
     void set_eye(SimTime at);
     void mark_tiles();
-    void mark(const std::vector<std::array<float, 2>>& points, const figure::Mesh& mesh, std::vector<std::uint8_t>& tiles);
+    void mark(const std::vector<std::array<float, 2>>& points, const figure::Mesh& mesh,
+              std::vector<std::uint8_t>& tiles);
     bool project(Float3 p, std::array<float, 2>& out) const;
     Float3 direction(float x, float y) const;
     void background(const std::array<Float3, kPack>& d, unsigned lanes, const Lanes8& sun_share,
                     std::array<Sample, kPack>& out) const;
-    void shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y, unsigned lanes, bool primary,
-               bool shadows, std::array<Sample, kPack>& out, std::array<std::uint8_t, kPack>* lit) const;
+    void shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y, unsigned lanes,
+               bool primary, bool shadows, std::array<Sample, kPack>& out,
+               std::array<std::uint8_t, kPack>* lit) const;
     void first_pass();
     void refine_outlines();
     void refine_shadows();
@@ -169,7 +182,9 @@ void PictureMaker::Data::pose_all(SimTime at) {
         place(*o.mesh, where, tracer.vertices(o.traced), o.normals_world);
         const Vec3 size = props[p].size_m;
         const bool ball = props[p].shape == stage::PropShape::kSphere;
-        o.spheres = {{float3(where.translation), static_cast<float>(ball ? size.x / 2 : std::min({size.x, size.y, size.z}) / 2)}};
+        o.spheres = {
+            {float3(where.translation),
+             static_cast<float>(ball ? size.x / 2 : std::min({size.x, size.y, size.z}) / 2)}};
     }
     tracer.commit();
 }
@@ -184,7 +199,8 @@ void PictureMaker::Data::set_eye(SimTime at) {
     eye.ahead = float3(rotate(q, {0, 0, -1}));
     eye.step = static_cast<float>(2 * half / height);
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        shades[i].make(tracer, tracer.vertices(objects[i].traced), objects[i].normals_world, eye.at, objects[i].light);
+        shades[i].make(tracer, tracer.vertices(objects[i].traced), objects[i].normals_world, eye.at,
+                       objects[i].light);
         objects[i].floor.make(objects[i].spheres);
     }
 }
@@ -203,21 +219,24 @@ bool PictureMaker::Data::project(Float3 p, std::array<float, 2>& out) const {
 }
 
 Float3 PictureMaker::Data::direction(float x, float y) const {
-    const float u = 2 * x / static_cast<float>(width) - 1, v = 1 - 2 * y / static_cast<float>(height);
+    const float u = 2 * x / static_cast<float>(width) - 1,
+                v = 1 - 2 * y / static_cast<float>(height);
     return normalized(eye.ahead + eye.right * u + eye.up * v);
 }
 
-void PictureMaker::Data::mark(const std::vector<std::array<float, 2>>& points, const figure::Mesh& mesh,
-                              std::vector<std::uint8_t>& tiles) {
+void PictureMaker::Data::mark(const std::vector<std::array<float, 2>>& points,
+                              const figure::Mesh& mesh, std::vector<std::uint8_t>& tiles) {
     for (const auto& t : mesh.triangles) {
         const auto &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
         // Half a pixel more: samples may lie beside the centre.
         const float x0 = std::min({a[0], b[0], c[0]}) - 1, x1 = std::max({a[0], b[0], c[0]}) + 1;
         const float y0 = std::min({a[1], b[1], c[1]}) - 1, y1 = std::max({a[1], b[1], c[1]}) + 1;
-        if (x1 < 0 || y1 < 0 || x0 >= static_cast<float>(width) || y0 >= static_cast<float>(height)) {
+        if (x1 < 0 || y1 < 0 || x0 >= static_cast<float>(width) ||
+            y0 >= static_cast<float>(height)) {
             continue;
         }
-        const int tx0 = std::max(0, static_cast<int>(x0) / kTile), ty0 = std::max(0, static_cast<int>(y0) / kTile);
+        const int tx0 = std::max(0, static_cast<int>(x0) / kTile),
+                  ty0 = std::max(0, static_cast<int>(y0) / kTile);
         const int tx1 = std::min(tiles_x - 1, static_cast<int>(std::min(x1, 1e5f)) / kTile);
         const int ty1 = std::min(tiles_y - 1, static_cast<int>(std::min(y1, 1e5f)) / kTile);
         for (int ty = ty0; ty <= ty1; ++ty) {
@@ -258,8 +277,8 @@ void PictureMaker::Data::mark_tiles() {
 }
 
 // Sky or ground in each direction; sun_share: of the sun that reaches the ground there.
-void PictureMaker::Data::background(const std::array<Float3, kPack>& d, unsigned lanes, const Lanes8& sun_share,
-                                    std::array<Sample, kPack>& out) const {
+void PictureMaker::Data::background(const std::array<Float3, kPack>& d, unsigned lanes,
+                                    const Lanes8& sun_share, std::array<Sample, kPack>& out) const {
     GroundPoints points{};
     Lanes8 distance{};
     unsigned down = 0;
@@ -282,7 +301,8 @@ void PictureMaker::Data::background(const std::array<Float3, kPack>& d, unsigned
     if (down != 0) {
         environment.ground(points, albedo);
     }
-    const Float3 sun = environment.sun() * environment.to_sun().y, sky = environment.ambient({0, 1, 0});
+    const Float3 sun = environment.sun() * environment.to_sun().y,
+                 sky = environment.ambient({0, 1, 0});
     for (std::size_t i = 0; i < kPack; ++i) {
         if (!(lanes >> i & 1)) {
             continue;
@@ -300,8 +320,9 @@ void PictureMaker::Data::background(const std::array<Float3, kPack>& d, unsigned
     }
 }
 
-void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y, unsigned lanes,
-                               bool primary, bool shadows, std::array<Sample, kPack>& out,
+void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y,
+                               unsigned lanes, bool primary, bool shadows,
+                               std::array<Sample, kPack>& out,
                                std::array<std::uint8_t, kPack>* lit) const {
     RayPack rays;
     HitPack hits;
@@ -365,12 +386,13 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
             out[i].id = static_cast<std::uint16_t>(o.first_id + o.material_of[hits.triangle[i]]);
             out[i].depth = hits.distance[i];
             if (dot(n, sun) > 0) {
-                // The shadow ray starts on the smooth surface, not on the flat triangle below it, or the border between
-                // light and dark would show the triangles.
-                // Source  J. Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021.
+                // The shadow ray starts on the smooth surface, not on the flat triangle below it,
+                // or the border between light and dark would show the triangles. Source  J. Hanika,
+                // "Hacking the shadow terminator", Ray Tracing Gems II, 2021.
                 Float3 lift{};
                 for (std::size_t k = 0; k < 3; ++k) {
-                    lift = lift + normal[k] * (w[k] * -std::min(0.0f, dot(at - corner[k], normal[k])));
+                    lift =
+                        lift + normal[k] * (w[k] * -std::min(0.0f, dot(at - corner[k], normal[k])));
                 }
                 start = at + lift + n * 0.002f;
                 to_sun |= 1u << i;
@@ -412,16 +434,19 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
         const float facing = shadow ? 0 : std::max(0.0f, dot(n, sun));
         const Float3 ambient = environment.ambient(n) * (0.25f + 0.75f * s.ambient) * s.ambient;
         Float3 shine = albedo * (environment.sun() * facing + ambient);
-        // A little shine: Blinn and Phong's highlight of the sun, and the sky mirrored at grazing angles (Schlick).
+        // A little shine: Blinn and Phong's highlight of the sun, and the sky mirrored at grazing
+        // angles (Schlick).
         const float gloss = 1 - s.material->roughness;
         const Float3 half = normalized(sun - d[i]);
         const float power = 8 + 90 * gloss * gloss;
         if (facing > 0) {
-            shine = shine + environment.sun() * (facing * 0.10f * gloss * (power + 8) / 25 * std::pow(std::max(0.0f, dot(n, half)), power));
+            shine = shine + environment.sun() * (facing * 0.10f * gloss * (power + 8) / 25 *
+                                                 std::pow(std::max(0.0f, dot(n, half)), power));
         }
         const float grazing = 1 - std::max(0.0f, -dot(n, d[i]));
         const float g2 = grazing * grazing;
-        shine = shine + environment.ambient({n.x, 0.6f + 0.4f * n.y, n.z}) * (s.ambient * (0.35f * g2 * g2 * grazing) * (0.35f + gloss));
+        shine = shine + environment.ambient({n.x, 0.6f + 0.4f * n.y, n.z}) *
+                            (s.ambient * (0.35f * g2 * g2 * grazing) * (0.35f + gloss));
         out[i].light = environment.haze(shine, out[i].depth);
     }
 }
@@ -446,7 +471,8 @@ void PictureMaker::Data::first_pass() {
                         const auto k = static_cast<std::size_t>(i);
                         x[k] = static_cast<float>(ix) + 0.5f;
                         y[k] = static_cast<float>(iy) + 0.5f;
-                        pixel[k] = static_cast<std::size_t>(iy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(ix);
+                        pixel[k] = static_cast<std::size_t>(iy) * static_cast<std::size_t>(width) +
+                                   static_cast<std::size_t>(ix);
                         lanes |= (ix < width && iy < height ? 1u : 0u) << i;
                     }
                     lit.fill(1);
@@ -478,7 +504,8 @@ void PictureMaker::Data::refine_shadows() {
     static const std::array<std::array<float, 2>, kShadowSamples> kDisc = [] {
         std::array<std::array<float, 2>, kShadowSamples> all{};
         for (int i = 0; i < kShadowSamples; ++i) {
-            const float r = std::sqrt((static_cast<float>(i) + 0.5f) / kShadowSamples), a = 2.399963f * static_cast<float>(i);
+            const float r = std::sqrt((static_cast<float>(i) + 0.5f) / kShadowSamples),
+                        a = 2.399963f * static_cast<float>(i);
             all[static_cast<std::size_t>(i)] = {r * std::cos(a), r * std::sin(a)};
         }
         return all;
@@ -487,7 +514,8 @@ void PictureMaker::Data::refine_shadows() {
     const Float3 side = normalized(cross(sun, {0, 1, 0})), other = cross(side, sun);
     RayPack rays;
     for (std::size_t i = 0; i < kPack; ++i) {
-        const Float3 way = normalized(sun + side * (kDisc[i][0] * kSunRadius) + other * (kDisc[i][1] * kSunRadius));
+        const Float3 way = normalized(sun + side * (kDisc[i][0] * kSunRadius) +
+                                      other * (kDisc[i][1] * kSunRadius));
         rays.dx[i] = way.x;
         rays.dy[i] = way.y;
         rays.dz[i] = way.z;
@@ -501,17 +529,27 @@ void PictureMaker::Data::refine_shadows() {
             }
             for (int py = ty * kTile; py < std::min(height, (ty + 1) * kTile); ++py) {
                 for (int px = tx * kTile; px < std::min(width, (tx + 1) * kTile); ++px) {
-                    const auto at = static_cast<std::size_t>(py) * static_cast<std::size_t>(width) + static_cast<std::size_t>(px);
+                    const auto at = static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
+                                    static_cast<std::size_t>(px);
                     if (ids[at] != kGroundId) {
                         continue;
                     }
                     bool rim = false;
-                    for (const auto& [ox, oy] : {std::array<int, 2>{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {kReach, 0}, {-kReach, 0}, {0, 2}, {0, -2}}) {
+                    for (const auto& [ox, oy] : {std::array<int, 2>{1, 0},
+                                                 {-1, 0},
+                                                 {0, 1},
+                                                 {0, -1},
+                                                 {kReach, 0},
+                                                 {-kReach, 0},
+                                                 {0, 2},
+                                                 {0, -2}}) {
                         const int nx = px + ox, ny = py + oy;
                         if (nx < 0 || ny < 0 || nx >= width || ny >= height) {
                             continue;
                         }
-                        const auto near = static_cast<std::size_t>(ny) * static_cast<std::size_t>(width) + static_cast<std::size_t>(nx);
+                        const auto near =
+                            static_cast<std::size_t>(ny) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(nx);
                         rim = rim || (ids[near] == kGroundId && sunlit[near] != sunlit[at]);
                     }
                     if (!rim) {
@@ -520,14 +558,16 @@ void PictureMaker::Data::refine_shadows() {
                     unsigned open = 0;
                     for (std::size_t i = 0; i < kPack; ++i) {
                         // Samples spread over the pixel as over the sun.
-                        const Float3 way = direction(static_cast<float>(px) + 0.5f + 0.5f * kDisc[i][1],
-                                                     static_cast<float>(py) + 0.5f + 0.5f * kDisc[i][0]);
+                        const Float3 way =
+                            direction(static_cast<float>(px) + 0.5f + 0.5f * kDisc[i][1],
+                                      static_cast<float>(py) + 0.5f + 0.5f * kDisc[i][0]);
                         const float distance = way.y < -1e-4f ? -eye.at.y / way.y : 0;
                         rays.ox[i] = eye.at.x + way.x * distance;
                         rays.oy[i] = 1e-4f;
                         rays.oz[i] = eye.at.z + way.z * distance;
                     }
-                    open = static_cast<unsigned>(kPack - __builtin_popcount(tracer.occluded(rays, 0xFF)));
+                    open = static_cast<unsigned>(kPack -
+                                                 __builtin_popcount(tracer.occluded(rays, 0xFF)));
                     std::array<Float3, kPack> d{};
                     std::array<Sample, kPack> samples;
                     d[0] = direction(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
@@ -580,8 +620,10 @@ void PictureMaker::Data::refine_outlines() {
         const auto px = static_cast<float>(pixels[p] % static_cast<std::size_t>(width));
         const auto py = static_cast<float>(pixels[p] / static_cast<std::size_t>(width));
         for (int s = 0; s < extra; ++s) {
-            // An additive sequence with good spread in the plane (R2; M. Roberts, 2018), without the middle.
-            const float u = 0.7548777f * static_cast<float>(s + 1) + 0.25f, v = 0.5698403f * static_cast<float>(s + 1) + 0.25f;
+            // An additive sequence with good spread in the plane (R2; M. Roberts, 2018), without
+            // the middle.
+            const float u = 0.7548777f * static_cast<float>(s + 1) + 0.25f,
+                        v = 0.5698403f * static_cast<float>(s + 1) + 0.25f;
             x[static_cast<std::size_t>(filled)] = px + u - std::floor(u);
             y[static_cast<std::size_t>(filled)] = py + v - std::floor(v);
             owner[static_cast<std::size_t>(filled)] = p;
@@ -618,11 +660,18 @@ void PictureMaker::Data::develop(Picture& out) const {
     out.rgb.resize(light.size() * 3);
     for (int py = 0; py < height; ++py) {
         for (int px = 0; px < width; ++px) {
-            const auto at = static_cast<std::size_t>(py) * static_cast<std::size_t>(width) + static_cast<std::size_t>(px);
-            const float noise = scene.look.dither ? (kBayer[static_cast<std::size_t>((py & 7) * 8 + (px & 7))] + 0.5f) / 64.0f : 0.5f;
-            out.rgb[3 * at] = static_cast<std::uint8_t>(std::min(255.0f, tone(light[at].x) + noise));
-            out.rgb[3 * at + 1] = static_cast<std::uint8_t>(std::min(255.0f, tone(light[at].y) + noise));
-            out.rgb[3 * at + 2] = static_cast<std::uint8_t>(std::min(255.0f, tone(light[at].z) + noise));
+            const auto at = static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(px);
+            const float noise =
+                scene.look.dither
+                    ? (kBayer[static_cast<std::size_t>((py & 7) * 8 + (px & 7))] + 0.5f) / 64.0f
+                    : 0.5f;
+            out.rgb[3 * at] =
+                static_cast<std::uint8_t>(std::min(255.0f, tone(light[at].x) + noise));
+            out.rgb[3 * at + 1] =
+                static_cast<std::uint8_t>(std::min(255.0f, tone(light[at].y) + noise));
+            out.rgb[3 * at + 2] =
+                static_cast<std::uint8_t>(std::min(255.0f, tone(light[at].z) + noise));
         }
     }
 }

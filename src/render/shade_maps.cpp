@@ -34,7 +34,9 @@ BodySpheres::BodySpheres(const figure::Skeleton& skeleton, const figure::Mesh& m
         const Vec3 size = high - low, middle = (low + high) * 0.5;
         // Beads along the longest side, as thick as the mean of the other two.
         const double longest = std::max({size.x, size.y, size.z});
-        const Vec3 axis = size.x == longest ? Vec3{1, 0, 0} : size.y == longest ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+        const Vec3 axis = size.x == longest   ? Vec3{1, 0, 0}
+                          : size.y == longest ? Vec3{0, 1, 0}
+                                              : Vec3{0, 0, 1};
         const double across = (size.x + size.y + size.z - longest) / 2;
         const double radius = std::min(across / 2, longest / 2);
         if (radius < 0.012) {
@@ -44,7 +46,8 @@ BodySpheres::BodySpheres(const figure::Skeleton& skeleton, const figure::Mesh& m
         const int count = 1 + static_cast<int>(way / (1.4 * radius));
         for (int k = 0; k < count; ++k) {
             const double t = count == 1 ? 0 : static_cast<double>(k) / (count - 1) - 0.5;
-            beads_.push_back({static_cast<std::uint32_t>(j), middle + axis * (t * way), static_cast<float>(radius)});
+            beads_.push_back({static_cast<std::uint32_t>(j), middle + axis * (t * way),
+                              static_cast<float>(radius)});
         }
     }
 }
@@ -74,7 +77,8 @@ void FloorShade::make(std::span<const Sphere> spheres) {
     low_z_ = (low.z + high.z - side) / 2;
     for (int i = 0; i <= kCells; ++i) {
         for (int k = 0; k <= kCells; ++k) {
-            const float x = low_x_ + cell_ * static_cast<float>(k), z = low_z_ + cell_ * static_cast<float>(i);
+            const float x = low_x_ + cell_ * static_cast<float>(k),
+                        z = low_z_ + cell_ * static_cast<float>(i);
             float light = 1;
             for (const Sphere& s : spheres) {
                 const float dx = s.centre_world.x - x, dz = s.centre_world.z - z;
@@ -83,7 +87,8 @@ void FloorShade::make(std::span<const Sphere> spheres) {
                 light *= 1 - s.radius * s.radius * y / (square * std::sqrt(square));
             }
             // Fades to nothing at the rim of the map.
-            const float rim_x = std::min(k, kCells - k) * (2.0f / kCells), rim_z = std::min(i, kCells - i) * (2.0f / kCells);
+            const float rim_x = std::min(k, kCells - k) * (2.0f / kCells),
+                        rim_z = std::min(i, kCells - i) * (2.0f / kCells);
             light_[static_cast<std::size_t>(i * (kCells + 1) + k)] =
                 mix(1.0f, light, smooth_step(0.0f, 0.45f, std::min(rim_x, rim_z)));
         }
@@ -122,9 +127,11 @@ VertexShade::VertexShade(const figure::Mesh& mesh) {
     }
 }
 
-void VertexShade::make(const Tracer& tracer, const float* positions, std::span<const std::array<float, 3>> normals,
-                       Float3 eye, std::span<float> light) {
-    // Eight directions about the pole, spread like the cosine: two rings; each vertex turns them by its own angle.
+void VertexShade::make(const Tracer& tracer, const float* positions,
+                       std::span<const std::array<float, 3>> normals, Float3 eye,
+                       std::span<float> light) {
+    // Eight directions about the pole, spread like the cosine: two rings; each vertex turns them by
+    // its own angle.
     struct Direction {
         float side, up, angle;
     };
@@ -132,25 +139,29 @@ void VertexShade::make(const Tracer& tracer, const float* positions, std::span<c
         std::array<Direction, kPack> all{};
         for (int i = 0; i < kPack; ++i) {
             const float square = (static_cast<float>(i) + 0.5f) / kPack;
-            all[static_cast<std::size_t>(i)] = {std::sqrt(square), std::sqrt(1 - square), 2.399963f * static_cast<float>(i)};
+            all[static_cast<std::size_t>(i)] = {std::sqrt(square), std::sqrt(1 - square),
+                                                2.399963f * static_cast<float>(i)};
         }
         return all;
     }();
     RayPack rays;
     for (std::size_t v = 0; v + 1 < first_neighbour_.size(); ++v) {
-        const Float3 p{positions[4 * v], positions[4 * v + 1], positions[4 * v + 2]}, n = float3(normals[v]);
+        const Float3 p{positions[4 * v], positions[4 * v + 1], positions[4 * v + 2]},
+            n = float3(normals[v]);
         light[v] = -1;
         const Float3 to_eye = eye - p;
         if (dot(n, to_eye) < -0.25f * std::sqrt(dot(to_eye, to_eye))) {
             continue;
         }
-        const Float3 side = normalized(cross(std::fabs(n.y) < 0.9f ? Float3{0, 1, 0} : Float3{1, 0, 0}, n));
+        const Float3 side =
+            normalized(cross(std::fabs(n.y) < 0.9f ? Float3{0, 1, 0} : Float3{1, 0, 0}, n));
         const Float3 other = cross(n, side);
         const float turn = 2.399963f * static_cast<float>(v % 64) * 3.7f;
         const Float3 start = p + n * 0.004f;
         for (std::size_t i = 0; i < kPack; ++i) {
             const Direction& d = kDirections[i];
-            const float c = std::cos(d.angle + turn) * d.side, s = std::sin(d.angle + turn) * d.side;
+            const float c = std::cos(d.angle + turn) * d.side,
+                        s = std::sin(d.angle + turn) * d.side;
             const Float3 way = side * c + other * s + n * d.up;
             rays.ox[i] = start.x;
             rays.oy[i] = start.y;

@@ -6,8 +6,8 @@
 namespace puppetri::render {
 namespace {
 
-void transform(const Matrix34& m, const std::array<float, 3>& p, const std::array<float, 3>& n, float* position,
-               std::array<float, 3>& normal) {
+void transform(const Matrix34& m, const std::array<float, 3>& p, const std::array<float, 3>& n,
+               float* position, std::array<float, 3>& normal) {
     float turned[3];
     for (std::size_t r = 0; r < 3; ++r) {
         position[r] = m[r][0] * p[0] + m[r][1] * p[1] + m[r][2] * p[2] + m[r][3];
@@ -24,12 +24,16 @@ void transform(const Matrix34& m, const std::array<float, 3>& p, const std::arra
 Matrix34 matrix_of(const Transform& t) {
     const auto& [x, y, z, w] = t.rotation;
     const auto f = [](double v) { return static_cast<float>(v); };
-    return {{{f(1 - 2 * (y * y + z * z)), f(2 * (x * y - z * w)), f(2 * (x * z + y * w)), f(t.translation.x)},
-             {f(2 * (x * y + z * w)), f(1 - 2 * (x * x + z * z)), f(2 * (y * z - x * w)), f(t.translation.y)},
-             {f(2 * (x * z - y * w)), f(2 * (y * z + x * w)), f(1 - 2 * (x * x + y * y)), f(t.translation.z)}}};
+    return {{{f(1 - 2 * (y * y + z * z)), f(2 * (x * y - z * w)), f(2 * (x * z + y * w)),
+              f(t.translation.x)},
+             {f(2 * (x * y + z * w)), f(1 - 2 * (x * x + z * z)), f(2 * (y * z - x * w)),
+              f(t.translation.y)},
+             {f(2 * (x * z - y * w)), f(2 * (y * z + x * w)), f(1 - 2 * (x * x + y * y)),
+              f(t.translation.z)}}};
 }
 
-Skin::Skin(const figure::Skeleton& skeleton, const figure::Mesh& mesh) : skeleton_(skeleton), mesh_(mesh) {
+Skin::Skin(const figure::Skeleton& skeleton, const figure::Mesh& mesh)
+    : skeleton_(skeleton), mesh_(mesh) {
     model_from_joint_.resize(skeleton.joints.size());
     figure::to_model_space(skeleton, figure::rest_pose(skeleton), model_from_joint_);
     for (const Transform& t : model_from_joint_) {
@@ -38,7 +42,8 @@ Skin::Skin(const figure::Skeleton& skeleton, const figure::Mesh& mesh) : skeleto
     matrices_.resize(skeleton.joints.size());
 }
 
-void Skin::apply(const figure::Pose& pose, float* positions_world, std::span<std::array<float, 3>> normals_world) {
+void Skin::apply(const figure::Pose& pose, float* positions_world,
+                 std::span<std::array<float, 3>> normals_world) {
     figure::to_model_space(skeleton_, pose, model_from_joint_);
     for (std::size_t j = 0; j < matrices_.size(); ++j) {
         matrices_[j] = matrix_of(model_from_joint_[j] * joint_from_model_rest_[j]);
@@ -47,8 +52,8 @@ void Skin::apply(const figure::Pose& pose, float* positions_world, std::span<std
         const auto& joints = mesh_.joints[v];
         const auto& weights = mesh_.weights[v];
         if (weights[0] == 1) {
-            transform(matrices_[joints[0]], mesh_.positions[v], mesh_.normals[v], positions_world + 4 * v,
-                      normals_world[v]);
+            transform(matrices_[joints[0]], mesh_.positions[v], mesh_.normals[v],
+                      positions_world + 4 * v, normals_world[v]);
             continue;
         }
         Matrix34 m{};
@@ -60,7 +65,8 @@ void Skin::apply(const figure::Pose& pose, float* positions_world, std::span<std
                 }
             }
         }
-        transform(m, mesh_.positions[v], mesh_.normals[v], positions_world + 4 * v, normals_world[v]);
+        transform(m, mesh_.positions[v], mesh_.normals[v], positions_world + 4 * v,
+                  normals_world[v]);
     }
 }
 

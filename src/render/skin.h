@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Linear blend skinning: where the vertices of a mesh are, given where its joints are. The same formula as in glTF
-// viewers, so that pictures show what exported files will.
+// Linear blend skinning: where the vertices of a mesh are, given where its joints are. The same
+// formula as in glTF viewers, so that pictures show what exported files will.
 #pragma once
 #include <array>
 #include <span>
@@ -17,14 +17,15 @@ using Matrix34 = std::array<std::array<float, 4>, 3>;
 Matrix34 matrix_of(const Transform& t);
 
 class Skin {
-   public:
+ public:
     // Both outlive the skin.
     Skin(const figure::Skeleton& skeleton, const figure::Mesh& mesh);
 
     // Fills positions (four floats apart) and normals (three floats, unit) in world space.
-    void apply(const figure::Pose& pose, float* positions_world, std::span<std::array<float, 3>> normals_world);
+    void apply(const figure::Pose& pose, float* positions_world,
+               std::span<std::array<float, 3>> normals_world);
 
-   private:
+ private:
     const figure::Skeleton& skeleton_;
     const figure::Mesh& mesh_;
     std::vector<Transform> joint_from_model_rest_, model_from_joint_;

@@ -9,7 +9,7 @@
 namespace puppetri::render {
 
 class Tone {
-   public:
+ public:
     Tone();
     // 0 .. 255, not yet rounded.
     float operator()(float light) const {
@@ -18,7 +18,7 @@ class Tone {
         return table_[i] + (table_[i + 1] - table_[i]) * (at - static_cast<float>(i));
     }
 
-   private:
+ private:
     static constexpr float kBrightest = 8;
     static constexpr int kSteps = 1024;
     static constexpr float kScale = kSteps / 2.8284272f;  // of the root of the brightest

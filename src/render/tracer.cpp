@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Embree 3 behind the tracer. Each tracer has a device of its own without helper threads: films run one per thread. The
-// tree is built anew for each picture (a few milliseconds), not refitted: a tree refitted from a T-pose is slow once the
-// arms hang, and a picture must not depend on those drawn before.
+// Embree 3 behind the tracer. Each tracer has a device of its own without helper threads: films run
+// one per thread. The tree is built anew for each picture (a few milliseconds), not refitted: a
+// tree refitted from a T-pose is slow once the arms hang, and a picture must not depend on those
+// drawn before.
 #include "tracer.h"
 
 #include <vector>
@@ -17,7 +18,8 @@ namespace puppetri::render {
 
 std::string why_no_pictures() {
 #if !defined(PUPPETRI_WITH_EMBREE) || !defined(PUPPETRI_WITH_PNG)
-    return "this program was built without Embree 3 or libpng, which draw and pack its pictures (on Debian: apt-get "
+    return "this program was built without Embree 3 or libpng, which draw and pack its pictures "
+           "(on Debian: apt-get "
            "install libembree-dev libpng-dev, then build again)";
 #else
     return "";
@@ -50,12 +52,14 @@ Tracer::Tracer() : data_(std::make_unique<Data>()) {
     rtcSetSceneBuildQuality(data_->scene, RTC_BUILD_QUALITY_LOW);
 }
 
-std::uint32_t Tracer::add(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertex_count) {
+std::uint32_t Tracer::add(std::span<const std::array<std::uint32_t, 3>> triangles,
+                          std::size_t vertex_count) {
     RTCGeometry geometry = rtcNewGeometry(data_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 4 * sizeof(float), vertex_count));
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 4 * sizeof(float), vertex_count));
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), triangles.size()));
     PUP_REQUIRE(vertices != nullptr && indices != nullptr);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k) {

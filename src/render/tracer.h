@@ -16,18 +16,20 @@ struct alignas(32) RayPack {
 };
 struct alignas(32) HitPack {
     std::array<std::uint32_t, kPack> mesh, triangle;  // kNoHit where nothing was met
-    std::array<float, kPack> u, v, distance;          // weights of the second and third vertex; in lengths of d
+    std::array<float, kPack> u, v,
+        distance;  // weights of the second and third vertex; in lengths of d
 };
 
 class Tracer {
-   public:
+ public:
     Tracer();
     ~Tracer();
     Tracer(Tracer&&) noexcept;
     Tracer& operator=(Tracer&&) noexcept;
 
     // Adds a mesh whose vertices will be written before each commit. Gives its number.
-    std::uint32_t add(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertex_count);
+    std::uint32_t add(std::span<const std::array<std::uint32_t, 3>> triangles,
+                      std::size_t vertex_count);
     // x y z of each vertex, four floats apart.
     float* vertices(std::uint32_t mesh);
     const float* vertices_of(std::uint32_t mesh) const;
@@ -39,7 +41,7 @@ class Tracer {
     // Bits of the rays that meet anything.
     unsigned occluded(const RayPack& rays, unsigned lanes) const;
 
-   private:
+ private:
     struct Data;
     std::unique_ptr<Data> data_;
 };

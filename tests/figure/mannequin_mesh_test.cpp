@@ -37,9 +37,11 @@ std::vector<std::array<float, 3>> skinned(const Body& b, const Pose& pose) {
         Vec3 sum;
         for (std::size_t k = 0; k < 4; ++k) {
             const std::size_t j = b.mesh.joints[v][k];
-            sum = sum + (now[j] * (inverse(rest[j]) * vec(b.mesh.positions[v]))) * static_cast<double>(b.mesh.weights[v][k]);
+            sum = sum + (now[j] * (inverse(rest[j]) * vec(b.mesh.positions[v]))) *
+                            static_cast<double>(b.mesh.weights[v][k]);
         }
-        out.push_back({static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)});
+        out.push_back(
+            {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)});
     }
     return out;
 }
@@ -137,7 +139,8 @@ TEST_CASE("left and right are mirror images, weights included [law]") {
     // A grid of cells finds the mirrored vertex.
     std::map<std::array<long, 3>, std::vector<std::size_t>> cells;
     const auto cell = [](const std::array<float, 3>& p) {
-        return std::array<long, 3>{std::lround(p[0] * 500), std::lround(p[1] * 500), std::lround(p[2] * 500)};
+        return std::array<long, 3>{std::lround(p[0] * 500), std::lround(p[1] * 500),
+                                   std::lround(p[2] * 500)};
     };
     for (std::size_t v = 0; v < b.mesh.positions.size(); ++v) {
         cells[cell(b.mesh.positions[v])].push_back(v);
@@ -163,14 +166,18 @@ TEST_CASE("left and right are mirror images, weights included [law]") {
             }
         }
         if (best > 1e-4) {
-            lost += std::fabs(p[0]) > 0.01f ? 1 : 0;  // triangles across the middle have no mirror image
+            lost += std::fabs(p[0]) > 0.01f
+                        ? 1
+                        : 0;  // triangles across the middle have no mirror image
             continue;
         }
         for (std::size_t k = 0; k < 4; ++k) {
             if (b.mesh.weights[v][k] > 0.01f) {
                 double same = 0;
                 for (std::size_t i = 0; i < 4; ++i) {
-                    same += b.mesh.joints[twin][i] == mirror_joint(b.mesh.joints[v][k]) ? static_cast<double>(b.mesh.weights[twin][i]) : 0;
+                    same += b.mesh.joints[twin][i] == mirror_joint(b.mesh.joints[v][k])
+                                ? static_cast<double>(b.mesh.weights[twin][i])
+                                : 0;
                 }
                 CHECK(std::fabs(same - static_cast<double>(b.mesh.weights[v][k])) < 0.02);
             }
@@ -180,8 +187,8 @@ TEST_CASE("left and right are mirror images, weights included [law]") {
 }
 
 TEST_CASE("the mannequin's volume is that of a slim adult [oracle]") {
-    // A body has about the density of water (985 kg/m3; J. Durnin, J. Womersley 1974). At a body mass index of 20 to 27,
-    // clothed, 1.75 m means 61 to 83 kg.
+    // A body has about the density of water (985 kg/m3; J. Durnin, J. Womersley 1974). At a body
+    // mass index of 20 to 27, clothed, 1.75 m means 61 to 83 kg.
     const Body b = body(1.75);
     const double mass_kg = 985 * volume_m3(b.mesh.positions, b.mesh.triangles);
     CHECK(mass_kg > 20 * 1.75 * 1.75);
@@ -203,8 +210,10 @@ TEST_CASE("bending keeps the volume of the body [law]") {
         return volume_m3(skinned(b, pose), b.mesh.triangles) / rest;
     };
     constexpr double d = kPi / 180;
-    CHECK(std::fabs(bent({{"leftUpperArm", about_z(-80 * d)}, {"rightUpperArm", about_z(80 * d)}}) - 1) < 0.02);
-    CHECK(std::fabs(bent({{"leftUpperLeg", about_x(-30 * d)}, {"rightUpperLeg", about_x(20 * d)}}) - 1) < 0.01);
+    CHECK(std::fabs(bent({{"leftUpperArm", about_z(-80 * d)}, {"rightUpperArm", about_z(80 * d)}}) -
+                    1) < 0.02);
+    CHECK(std::fabs(bent({{"leftUpperLeg", about_x(-30 * d)}, {"rightUpperLeg", about_x(20 * d)}}) -
+                    1) < 0.01);
     CHECK(std::fabs(bent({{"leftUpperLeg", about_x(-90 * d)}}) - 1) < 0.04);
     CHECK(std::fabs(bent({{"leftLowerLeg", about_x(70 * d)}}) - 1) < 0.02);
     CHECK(std::fabs(bent({{"leftLowerArm", about_y(-100 * d)}}) - 1) < 0.02);
@@ -212,12 +221,14 @@ TEST_CASE("bending keeps the volume of the body [law]") {
 }
 
 TEST_CASE("a turned hand does not wring the wrist [law]") {
-    // Half of the hand's turn is given to the twist bone of the forearm, as the solver of controls does.
+    // Half of the hand's turn is given to the twist bone of the forearm, as the solver of controls
+    // does.
     const Body b = body(1.75);
     constexpr double d = kPi / 180;
     Pose pose = rest_pose(b.figure.skeleton);
     pose.parent_from_joint[b.figure.skeleton.find("leftHand").value].rotation = about_x(90 * d);
-    pose.parent_from_joint[b.figure.skeleton.find("leftLowerArmTwist").value].rotation = about_x(45 * d);
+    pose.parent_from_joint[b.figure.skeleton.find("leftLowerArmTwist").value].rotation =
+        about_x(45 * d);
     const auto turned = skinned(b, pose);
     // The skin keeps its distance from the forearm's axis, all along it.
     std::vector<Transform> rest(b.figure.skeleton.joints.size());

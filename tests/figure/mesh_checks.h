@@ -23,8 +23,9 @@ inline bool closed_manifold(const figure::Mesh& mesh) {
             }
         }
     }
-    return std::all_of(edges.begin(), edges.end(),
-                       [&](const auto& e) { return edges.count({e.second, e.first}) == 1; });
+    return std::all_of(edges.begin(), edges.end(), [&](const auto& e) {
+        return edges.count({e.second, e.first}) == 1;
+    });
 }
 
 // V - E + F of a closed mesh; a sphere has 2. Vertices that no triangle uses do not count.
@@ -71,7 +72,8 @@ inline double volume_m3(const std::vector<std::array<float, 3>>& positions,
 inline bool parts_cover(const figure::Mesh& mesh) {
     std::vector<int> covered(mesh.triangles.size());
     for (const figure::MeshPart& p : mesh.parts) {
-        if (p.material >= mesh.materials.size() || p.first_triangle + p.triangle_count > covered.size()) {
+        if (p.material >= mesh.materials.size() ||
+            p.first_triangle + p.triangle_count > covered.size()) {
             return false;
         }
         for (std::uint32_t t = 0; t < p.triangle_count; ++t) {
@@ -93,20 +95,23 @@ inline double worst_normal_length(const figure::Mesh& mesh) {
 inline double thinnest_triangle_m(const figure::Mesh& mesh) {
     double thinnest = 1e9;
     for (const auto& t : mesh.triangles) {
-        const Vec3 a = vec(mesh.positions[t[0]]), b = vec(mesh.positions[t[1]]), c = vec(mesh.positions[t[2]]);
+        const Vec3 a = vec(mesh.positions[t[0]]), b = vec(mesh.positions[t[1]]),
+                   c = vec(mesh.positions[t[2]]);
         const double longest = std::max({length(b - a), length(c - b), length(a - c)});
         thinnest = std::min(thinnest, length(cross(b - a, c - a)) / longest);
     }
     return thinnest;
 }
 
-// The share of the surface whose triangles face another way than the mean of their vertices' normals.
+// The share of the surface whose triangles face another way than the mean of their vertices'
+// normals.
 inline double share_facing_inwards(const figure::Mesh& mesh) {
     double all = 0, wrong = 0;
     for (const auto& t : mesh.triangles) {
         const Vec3 a = vec(mesh.positions[t[0]]);
         const Vec3 n = cross(vec(mesh.positions[t[1]]) - a, vec(mesh.positions[t[2]]) - a);
-        const Vec3 mean = vec(mesh.normals[t[0]]) + vec(mesh.normals[t[1]]) + vec(mesh.normals[t[2]]);
+        const Vec3 mean =
+            vec(mesh.normals[t[0]]) + vec(mesh.normals[t[1]]) + vec(mesh.normals[t[2]]);
         all += length(n);
         wrong += dot(n, mean) <= 0 ? length(n) : 0;
     }
@@ -117,7 +122,8 @@ inline double share_facing_inwards(const figure::Mesh& mesh) {
 inline double distance_to_surface_m(const figure::Mesh& mesh, Vec3 p) {
     double best = 1e9;
     for (const auto& t : mesh.triangles) {
-        const Vec3 a = vec(mesh.positions[t[0]]), ab = vec(mesh.positions[t[1]]) - a, ac = vec(mesh.positions[t[2]]) - a;
+        const Vec3 a = vec(mesh.positions[t[0]]), ab = vec(mesh.positions[t[1]]) - a,
+                   ac = vec(mesh.positions[t[2]]) - a;
         const Vec3 ap = p - a, n = cross(ab, ac);
         // Barycentric coordinates of the foot, clamped edge by edge.
         const double nn = dot(n, n);

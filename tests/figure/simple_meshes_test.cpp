@@ -61,15 +61,18 @@ TEST_CASE("a box fills its size but for bevelled edges [oracle]") {
     const Mesh box = make_box_mesh(size, *find_palette("clay"));
     Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
     for (const auto& p : box.positions) {
-        low = {std::min<double>(low.x, p[0]), std::min<double>(low.y, p[1]), std::min<double>(low.z, p[2])};
-        high = {std::max<double>(high.x, p[0]), std::max<double>(high.y, p[1]), std::max<double>(high.z, p[2])};
+        low = {std::min<double>(low.x, p[0]), std::min<double>(low.y, p[1]),
+               std::min<double>(low.z, p[2])};
+        high = {std::max<double>(high.x, p[0]), std::max<double>(high.y, p[1]),
+                std::max<double>(high.z, p[2])};
     }
     CHECK(length(high - low - size) < 1e-6);
     CHECK(length(high + low) < 1e-6);
     CHECK(parts_cover(box));
     CHECK(worst_normal_length(box) < 1e-5);
     CHECK(share_facing_inwards(box) == 0);
-    // Twelve bevels of b^2 / 2 each, less what the corners share: between 93 and 100 % of the volume.
+    // Twelve bevels of b^2 / 2 each, less what the corners share: between 93 and 100 % of the
+    // volume.
     const double volume = volume_m3(box.positions, box.triangles);
     CHECK(volume < size.x * size.y * size.z);
     CHECK(volume > 0.93 * size.x * size.y * size.z);

@@ -52,7 +52,9 @@ TEST_CASE("those kept in view stay in the picture for the whole film [law]") {
         for (const bool own_angle : {true, false}) {
             StageOfBalls stage(8);
             stage.add_actor(1.75, [](double t) { return at(-1.5 - 0.2 * t, 0.9 * t); });
-            stage.add_actor(1.6, [](double t) { return at(1.5 + std::sin(2 * t), t > 3 ? 0.9 * (t - 3) : 0, t); });
+            stage.add_actor(1.6, [](double t) {
+                return at(1.5 + std::sin(2 * t), t > 3 ? 0.9 * (t - 3) : 0, t);
+            });
             scene::Camera camera;
             camera.keeps = {{0}, {1}};
             camera.moves_with_them = moves;
@@ -72,7 +74,8 @@ TEST_CASE("those kept in view stay in the picture for the whole film [law]") {
                     std::vector<Transform> world(skeleton.joints.size());
                     figure::to_model_space(skeleton, pose, world);
                     for (std::size_t j = 0; j < world.size(); ++j) {
-                        const Spot s = spot(view, kWide, world[j] * skeleton.joints[j].end_site_joint);
+                        const Spot s =
+                            spot(view, kWide, world[j] * skeleton.joints[j].end_site_joint);
                         CAPTURE(t);
                         CAPTURE(skeleton.joints[j].name);
                         CHECK(s.depth > 0);
@@ -88,7 +91,13 @@ TEST_CASE("those kept in view stay in the picture for the whole film [law]") {
 TEST_CASE("a camera that moves with walkers neither jerks nor drifts away [law]") {
     StageOfBalls stage(10);
     // Stop and go, and a heading that swings: what a walk does to a careless camera.
-    stage.add_actor(1.75, [](double t) { return at(0.05 * std::sin(7 * t), t < 4 ? 0.0 : t < 7 ? 1.2 * (t - 4) : 3.6, 0.3 * std::sin(9 * t)); });
+    stage.add_actor(1.75, [](double t) {
+        return at(0.05 * std::sin(7 * t),
+                  t < 4   ? 0.0
+                  : t < 7 ? 1.2 * (t - 4)
+                          : 3.6,
+                  0.3 * std::sin(9 * t));
+    });
     scene::Camera camera;
     camera.at_world = {0, 1.6, 6};
     camera.keeps = {{0}};
@@ -111,11 +120,13 @@ TEST_CASE("views do not depend on the order of asking [law]") {
     StageOfBalls stage(4);
     stage.add_actor(1.75, [](double t) { return at(t, -t); });
     const CameraPath path(default_camera(stage), stage, kWide);
-    const View late = path.view(StageOfBalls::instant(3.3)), early = path.view(StageOfBalls::instant(0.2));
+    const View late = path.view(StageOfBalls::instant(3.3)),
+               early = path.view(StageOfBalls::instant(0.2));
     CHECK(path.view(StageOfBalls::instant(3.3)).world_from_camera == late.world_from_camera);
     CHECK(path.view(StageOfBalls::instant(0.2)).world_from_camera == early.world_from_camera);
     // Beyond the end it rests.
-    CHECK(path.view(StageOfBalls::instant(400)).world_from_camera == path.view(StageOfBalls::instant(500)).world_from_camera);
+    CHECK(path.view(StageOfBalls::instant(400)).world_from_camera ==
+          path.view(StageOfBalls::instant(500)).world_from_camera);
 }
 
 TEST_CASE("the default camera sees the faces of all actors [unit]") {

@@ -138,8 +138,10 @@ TEST_CASE("ffmpeg makes films of each kind, with all frames [oracle]") {
         CHECK(draw_film(rolling.scene(), format, **sink).has_value());
         CHECK((*sink)->finish().has_value());
         const auto list = folder / "puppetri_film_test.txt";
-        const std::string probe = "ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,height -of csv=p=0 '" +
-                                  file.string() + "' > '" + list.string() + "'";
+        const std::string probe =
+            "ffprobe -v error -count_frames -select_streams v -show_entries "
+            "stream=nb_read_frames,height -of csv=p=0 '" +
+            file.string() + "' > '" + list.string() + "'";
         CHECK(std::system(probe.c_str()) == 0);
         CHECK(bytes_of(list) == "64,9\n");
         std::filesystem::remove(file);

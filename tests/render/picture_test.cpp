@@ -18,12 +18,13 @@ struct Rgb {
     int bright() const { return r + g + b; }
 };
 Rgb pixel(const Picture& p, double x, double y) {
-    const auto at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x));
+    const auto at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) +
+                         static_cast<std::size_t>(x));
     return {p.rgb[at], p.rgb[at + 1], p.rgb[at + 2]};
 }
 
-// A camera at (0, 1, 5) that looks along -Z with a vertical field of view of 90 degrees: a point at depth d and height h
-// is h / d half pictures from the middle.
+// A camera at (0, 1, 5) that looks along -Z with a vertical field of view of 90 degrees: a point at
+// depth d and height h is h / d half pictures from the middle.
 scene::Camera straight() {
     scene::Camera camera;
     camera.at_world = {0, 1, 5};
@@ -48,13 +49,15 @@ TEST_CASE("a ball is drawn where projection says, in its colours, and round [ora
         return;
     }
     StageOfBalls stage(1);
-    // At depth 4: 1 m is 32 pixels. The ball's middle is half a picture right of the middle and 0.5 m below the eye.
+    // At depth 4: 1 m is 32 pixels. The ball's middle is half a picture right of the middle and 0.5
+    // m below the eye.
     stage.add_ball(1, [](double) { return Transform{{}, {2, 0.5, 1}}; });
     const Picture p = drawn(stage);
     REQUIRE(p.rgb.size() == 256 * 256 * 3);
     const StageOfBalls nothing(1);
     const Picture bare = drawn(nothing);
-    // Pixels of the ball differ from the bare picture; so do those of its shadow, on the ground below y = 128.
+    // Pixels of the ball differ from the bare picture; so do those of its shadow, on the ground
+    // below y = 128.
     int inside = 0, outside_above = 0;
     for (int y = 0; y < 256; ++y) {
         for (int x = 0; x < 256; ++x) {
@@ -63,7 +66,8 @@ TEST_CASE("a ball is drawn where projection says, in its colours, and round [ora
             const Vec3 to_ball = Vec3{2, 0.5, 1} - Vec3{0, 1, 5};
             const double beside = length(to_ball - d * dot(to_ball, d));
             const Rgb a = pixel(p, x, y), b = pixel(bare, x, y);
-            const bool differs = std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) > 24;
+            const bool differs =
+                std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) > 24;
             if (beside < 0.47) {
                 ++inside;
                 CHECK(differs);
@@ -87,7 +91,8 @@ TEST_CASE("a ball casts its shadow away from the sun [oracle]") {
     const Picture p = drawn(stage, look);
     const StageOfBalls nothing(1);
     const Picture bare = drawn(nothing, look);
-    // The sun stands at 45 degrees on the left: the shadow's middle is at (2, 0, 0), depth 5, 1 m below the eye.
+    // The sun stands at 45 degrees on the left: the shadow's middle is at (2, 0, 0), depth 5, 1 m
+    // below the eye.
     const double x = 128 + 2.0 / 5 * 128, y = 128 + 1.0 / 5 * 128;
     CHECK(pixel(p, x, y).bright() < 0.7 * pixel(bare, x, y).bright());
     // The other side is as before.
@@ -105,7 +110,8 @@ TEST_CASE("feet darken the floor around them [unit]") {
     const Picture p = drawn(stage, look);
     const StageOfBalls nothing(1);
     const Picture bare = drawn(nothing, look);
-    // On the floor 5 cm in front of the ball: z = 1.25, depth 3.75. The ball takes a quarter of the sky there.
+    // On the floor 5 cm in front of the ball: z = 1.25, depth 3.75. The ball takes a quarter of the
+    // sky there.
     const double y = 128 + 1 / 3.75 * 128;
     CHECK(pixel(p, 128, y).bright() < 0.97 * pixel(bare, 128, y).bright());
 }
@@ -131,7 +137,9 @@ TEST_CASE("an instant gives the same bytes whatever was drawn before [law]") {
     CHECK(first.rgb == fresh.rgb);
 }
 
-TEST_CASE("pictures of any shape are drawn, also from below the ground and from inside a figure [hostile]") {
+TEST_CASE(
+    "pictures of any shape are drawn, also from below the ground and from inside a figure "
+    "[hostile]") {
     if (!can_draw()) {
         return;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes with a few words exchanged, doubled or dropped: each either loads whole and runs, or tells why not. Never a
-// crash, never half a scene, always a remedy.
+// Scenes with a few words exchanged, doubled or dropped: each either loads whole and runs, or tells
+// why not. Never a crash, never half a scene, always a remedy.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,11 +17,13 @@ std::vector<std::string> pieces(const std::string& text) {
     std::vector<std::string> out;
     std::string piece;
     const auto is_word = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_';
     };
     for (std::size_t i = 0; i < text.size(); ++i) {
         piece += text[i];
-        const bool more = i + 1 < text.size() && (text[i] == ' ' || (is_word(text[i]) && is_word(text[i + 1])));
+        const bool more =
+            i + 1 < text.size() && (text[i] == ' ' || (is_word(text[i]) && is_word(text[i + 1])));
         if (!more) {
             out.push_back(std::move(piece));
             piece.clear();
@@ -43,7 +45,8 @@ std::string joined(const std::vector<std::string>& list) {
 TEST_CASE("scenes with exchanged, doubled and dropped words load whole or not at all [hostile]") {
     ExampleFiles examples;
     int loaded = 0, refused = 0;
-    for (const char* path : {"03_ball/ball.pup", "02_walk/limbs.pup", "01_toss/toss.pup", "03_ball/figure5.pup"}) {
+    for (const char* path :
+         {"03_ball/ball.pup", "02_walk/limbs.pup", "01_toss/toss.pup", "03_ball/figure5.pup"}) {
         const std::vector<std::string> original = pieces(*examples.read(path));
         RandomStream random{stream_key(1, path, "mutation"), 0};
         for (int round = 0; round < 60; ++round) {
@@ -77,7 +80,8 @@ TEST_CASE("scenes with exchanged, doubled and dropped words load whole or not at
                 continue;
             }
             ++loaded;
-            const auto performed = perform(*scene, {.horizon = {.time = SimTime{5 * kTicksPerSecond}, .firings = 60}});
+            const auto performed =
+                perform(*scene, {.horizon = {.time = SimTime{5 * kTicksPerSecond}, .firings = 60}});
             CHECK(performed.has_value());
         }
     }

@@ -15,7 +15,8 @@ struct JointLimit {
     Vec3 side_joint{
         1, 0,
         0};  // cone: unit, orthogonal to the axis; swings about it have the range swing_side_rad
-    Quat parent_from_centre{};  // the middle of the cone's swing, as a value of the joint's rotation
+    Quat
+        parent_from_centre{};  // the middle of the cone's swing, as a value of the joint's rotation
     double lo_rad = 0, hi_rad = 0;  // hinge range or twist range
     double swing_side_rad = 0;      // half angle of swings about side_joint
     double swing_other_rad = 0;     // half angle of swings about axis x side

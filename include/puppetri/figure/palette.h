@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Palettes: the few colours that a figure or a prop wears, chosen to go together under a warm sun. A scene names one
+// Palettes: the few colours that a figure or a prop wears, chosen to go together under a warm sun.
+// A scene names one
 // (`palette teal`); everything that draws or exports gets the same linear colours from here.
 #pragma once
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Films: many pictures, drawn by several threads, handed over in order to a sink: the program `ffmpeg` at the end of a
-// pipe, or whatever the caller makes of them.
+// Films: many pictures, drawn by several threads, handed over in order to a sink: the program
+// `ffmpeg` at the end of a pipe, or whatever the caller makes of them.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -29,16 +29,16 @@ struct FilmFormat {
 
 // Takes pictures one by one.
 class FrameSink {
-   public:
+ public:
     virtual ~FrameSink() = default;
     // Called in order of frames, from the thread that called draw_film. An error ends the film.
     virtual FilmStatus frame(std::int64_t number, const Picture& picture) = 0;
 };
 
-// Draws the frames and hands each over as soon as those before it are. Gives the first error of the sink.
-// Needs   first_frame <= last_frame, and instants of frames that fit SimTime.
-// Gives   the same bytes for any number of threads.
-// Cost    one PictureMaker per thread; at most two pictures per thread wait.
+// Draws the frames and hands each over as soon as those before it are. Gives the first error of the
+// sink. Needs   first_frame <= last_frame, and instants of frames that fit SimTime. Gives   the
+// same bytes for any number of threads. Cost    one PictureMaker per thread; at most two pictures
+// per thread wait.
 FilmStatus draw_film(const RenderScene& scene, const FilmFormat& format, FrameSink& sink);
 
 // A PNG file in memory: 8-bit RGB.
@@ -46,11 +46,12 @@ std::string encode_png(const Picture& picture);
 
 // The program `ffmpeg` (found on the PATH) that encodes what is piped into it.
 class FfmpegSink final : public FrameSink {
-   public:
+ public:
     // Starts it. The name's ending chooses the codec: .mp4 H.264, .webm VP9, .gif, .apng.
     // Needs   even width and height for .mp4 and .webm (one row or column is left out otherwise).
     // Fails   another ending; no program named ffmpeg; no more processes.
-    static Result<std::unique_ptr<FfmpegSink>, FilmError> start(const FilmFormat& format, const std::string& file,
+    static Result<std::unique_ptr<FfmpegSink>, FilmError> start(const FilmFormat& format,
+                                                                const std::string& file,
                                                                 std::string_view ending);
     ~FfmpegSink() override;  // an unfinished one is ended and waited for
 
@@ -58,7 +59,7 @@ class FfmpegSink final : public FrameSink {
     // Closes the pipe and waits. Fails with what ffmpeg said, when it failed.
     FilmStatus finish();
 
-   private:
+ private:
     struct Data;
     explicit FfmpegSink(std::unique_ptr<Data> data);
     std::unique_ptr<Data> data_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a performance: its figures and props under a sun and a sky, on a floor or a road, ray traced with Embree.
-// A PictureMaker belongs to one thread; several may look at one performance.
+// Pictures of a performance: its figures and props under a sun and a sky, on a floor or a road, ray
+// traced with Embree. A PictureMaker belongs to one thread; several may look at one performance.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -25,8 +25,9 @@ struct Picture {
 struct Look {
     // Any length above 0, y > 0. None: over the left shoulder of the camera as it stands at time 0.
     std::optional<Vec3> to_sun_world;
-    int edge_samples = 5;                  // more primary rays per pixel where the first ones disagree; 0 turns it off
-    bool dither = true;                    // half a step of noise against bands in the sky; off for .gif and .apng
+    int edge_samples =
+        5;  // more primary rays per pixel where the first ones disagree; 0 turns it off
+    bool dither = true;  // half a step of noise against bands in the sky; off for .gif and .apng
 };
 
 // All that a picture needs beside the time. What it points to must outlive the PictureMaker.
@@ -41,7 +42,7 @@ struct RenderScene {
 std::string why_no_pictures();
 
 class PictureMaker {
-   public:
+ public:
     // Needs why_no_pictures() empty, performance and camera, 16 <= width, height <= 8192.
     PictureMaker(const RenderScene& scene, int width, int height);
     ~PictureMaker();
@@ -53,7 +54,7 @@ class PictureMaker {
     // Cost    about 0.1 s for 1280x720 with two mannequins on one core.
     void draw(SimTime at, Picture& out);
 
-   private:
+ private:
     struct Data;
     std::unique_ptr<Data> data_;
 };
