@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `puppetri run SCENE`: performs a scene and tells what happened: log, score, hash, a chart.
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -33,6 +34,25 @@ bool write_or_say(const std::string& path, const std::string& text) {
         return false;
     }
     return true;
+}
+
+// The first few of each kind: a long run may lose hundreds of events.
+void say_notes(const Diagnostics& notes) {
+    constexpr std::size_t kShown = 5;
+    std::map<std::string, std::size_t> told;
+    Diagnostics shown;
+    for (const Diagnostic& d : notes) {
+        if (++told[d.code] <= kShown) {
+            shown.push_back(d);
+        }
+    }
+    say_diagnostics(shown);
+    for (const auto& [code, count] : told) {
+        if (count > kShown) {
+            say("  and " + std::to_string(count - kShown) + " more of this kind [" + code +
+                "]; --json has them");
+        }
+    }
 }
 
 int run(const Arguments& arguments) {
@@ -93,7 +113,7 @@ int run(const Arguments& arguments) {
                                                     scene::event_names(scene->net))) &&
                good;
     }
-    say_diagnostics(result.notes);
+    say_notes(result.notes);
     if (result.fault) {
         say_diagnostics({*result.fault});
     }

@@ -184,6 +184,13 @@ class Run(Cli):
         self.assertEqual(bad.returncode, 2)
         self.assertIn("bad.txt:1:5", bad.stderr)
 
+    def test_notes_of_one_kind_are_told_a_few_times(self):
+        scene = self.scene("scene \"x\"\nuntil 60 s\nevent go every 1 s\nplace P takes 7 s tokens 1\nt: P -> P on go\n")
+        done = run("run", scene)
+        self.assertEqual(done.stderr.count("nothing used it"), 5)
+        self.assertRegex(done.stderr, r"and \d+ more of this kind \[lost-event\]")
+        self.assertGreater(len(json.loads(run("run", scene, "--json").stdout)["notes"]), 40)
+
     def test_a_fault_of_the_run_exits_1_with_its_reason(self):
         scene = self.scene("scene \"x\"\ndata n: 0 .. 2 = 0\nplace P tokens 1 takes 1 s\nt: P -> P set n := n + 1\n"
                            "until 9 s\n")
