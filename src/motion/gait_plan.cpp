@@ -11,28 +11,31 @@
 namespace puppetri::motion {
 namespace {
 
-// The shape of a walk. Angles after the averages of slow adult gait in Winter (2009, chapter 3) and
-// Perry (1992), except that the heel rises less before the foot leaves the floor, so that a
-// standing knee stays below 25 degrees.
-constexpr double kSwingPitch = radians(-46), kFlatSwingPitch = radians(-26);
-constexpr double kSwingKnee = radians(60);
-constexpr double kFlatAfterStrike = 0.17,
-                 kHeelRise = 0.26;  // parts of n: strike to foot flat, heel off to border
-constexpr double kList = radians(2.5);
-constexpr double kSway_m = 0.0205;       // to either side, at any height
-constexpr double kBoundaryLead = 0.065;  // of the stroke
-constexpr double kRestLag =
-    0.01;  // of the stroke: what the living rest after the last step makes good
+// The shape of a walk: angles after the averages of slow adult gait in Winter (2009, chapter 3) and
+// Perry (1992). What is not from there was found by measuring all heights and step counts against
+// the table of good motion (tests/motion/gait_test.cpp); beside each stands what it trades.
+constexpr double kSwingPitch = radians(-46);  // of the foot behind: first guess, fitted so that
+constexpr double kSwingKnee = radians(60);    //   the knee of the swing bends by this
+constexpr double kFlatAfterStrike = 0.17;     // of n: longer drags the sole, shorter slaps it
+constexpr double kHeelRise = 0.26;            // of n, heel off to border: earlier bends the knee
+constexpr double kList = radians(2.5);        // of the pelvis to the free side
+constexpr double kSway_m = 0.0205;            // to either side, at any height: 20 to 50 mm wide
+constexpr double kBoundaryLead = 0.065;       // of the stroke, ahead of the formula at borders:
+                                              //   more eases stopping, less eases going on
+constexpr double kRestLag = 0.01;             // of the stroke: what the living rest makes good
 constexpr double kClearance_m = 0.022;
-constexpr double kBrake = 6.0;      // at touch down, in units of way / time^2
-constexpr double kLeave = 3.0;      // after toe off, in the same units
-constexpr double kSetDown_m = 1.6;  // the same upward, in m
-// Reach of a leg in parts of its length: the longest (knee 8.3 degrees), when it lands (14), pushes
-// off (20), and the shortest of a leg that stands (24.4).
+// Accelerations of the ankle just before touch down (back, up) and after toe off (ahead). Without
+// them the foot hangs far ahead of the pelvis before it lands and trails behind after it leaves, on
+// a leg that is then stretched and snaps.
+constexpr double kBrake = 6.0, kLeave = 3.0;  // in units of way / time^2
+constexpr double kSetDown_m = 1.6;            // in m / time^2
+// Reach of a leg in parts of its length: the longest (knee 8.3 degrees; straighter, a millimetre of
+// the pelvis turns it by degrees), when it lands (14), pushes off (20), and the shortest of a leg
+// that stands (23.6). From kSlips on a standing foot would leave its print.
 constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9788;
-constexpr double kCatch_s = 0.16;        // to put down a foot that should already stand
+constexpr double kSlips = 0.9981;
 constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down
-constexpr double kSlips = 0.9981;        // from here on a standing foot would leave its print
+constexpr double kCatch_s = 0.16;        // to put down a foot that should already stand
 
 class Planner {
  public:
@@ -63,7 +66,7 @@ class Planner {
         plan_travel_of_pelvis();
         plan_turns();
         plan_support_foot();
-        swing_pitch_ = rolls() || half_ < 0 ? kSwingPitch : kFlatSwingPitch;
+        swing_pitch_ = kSwingPitch;
         for (int round = 0; round < 4; ++round) {
             plan_swing_foot();
             plan_height_of_pelvis();
