@@ -55,7 +55,57 @@ TEST_CASE("k steps last exactly 20 k frames and end with P8 for odd k, P7 for ev
     }
 }
 
-Net ball_game() {
+// `place` runs a walk of so many steps.
+void add_walk(Maker& m, const std::string& place, int steps, std::uint32_t& actions) {
+    const std::string w = place + ".";
+    const double n = 20 * kFrame;
+    for (const auto& [name, s] :
+         {std::pair{"P2", n / 2}, {"P4", n}, {"P6", n}, {"P7", n / 2}, {"P8", n / 2}}) {
+        m.place(w + name, 0, lasts(s)).action = ActionIndex{actions++};
+    }
+    const auto t = [&](const char* name, std::vector<std::string> in, std::vector<std::string> out,
+                       int priority) {
+        for (auto* list : {&in, &out}) {
+            for (std::string& arc : *list) {
+                const std::size_t at = arc.find('P');
+                arc.insert(at, w);
+            }
+        }
+        m.t(w + name, in, out).priority = priority;
+    };
+    t("t1", {"P1"}, {"P2", "P3"}, 1);
+    t("t2", {"P2", "unless P5"}, {"P4", "P3"}, 2);
+    t("t3", {"P4", "unless P5"}, {"P6", "P3"}, 2);
+    t("t4", {"P6", "unless P5"}, {"P4", "P3"}, 2);
+    t("t5", {std::to_string(steps) + "*P3"}, {"P5"}, 1);
+    t("t6", {"P4"}, {"P7"}, 1);
+    t("t7", {"P2"}, {"P8"}, 1);
+    t("t8", {"P6"}, {"P8"}, 1);
+    t("t9", {"P7"}, {"P9"}, 1);
+    t("t10", {"P8"}, {"P9"}, 1);
+    t("leave", {"P9", "P5"}, {"Pdone"}, 1);
+    RefinementDraft r;
+    r.place = m.p(place);
+    r.start = {m.p(w + "P1")};
+    r.finish = {m.p(w + "Pdone")};
+    for (const char* inside : {"P1", "P2", "P3", "P4", "P5", "P6", "P7", "P8", "P9", "Pdone"}) {
+        r.inside.push_back(m.p(w + inside));
+    }
+    m.draft.refinements.push_back(r);
+    m.place(place).duration.reset();
+}
+
+struct QuietHost final : MovementHost {
+    SimTime begin(ActionIndex, ActivityIndex, SimTime, SimTime duration,
+                  std::span<const std::int64_t>) override {
+        return duration;
+    }
+    std::span<const RaisedEvent> raised(ActivityIndex) override { return {}; }
+    void cut(ActivityIndex, SimTime) override {}
+    void left(ActivityIndex, SimTime) override {}
+};
+
+Net ball_game(bool with_walks = false) {
     Maker m;
     const auto timed = [&](const char* name, double s) { m.place(name, 0, lasts(s)); };
     m.place("P1", 1, lasts(1.5));
@@ -91,6 +141,18 @@ Net ball_game() {
     m.t("t14", {"P18", "P11"}, {"P19"});
     m.t("t15", {"P19"}, {"P20", "P12"});
     m.t("t16", {"P20"}, {"P13"});
+    if (with_walks) {
+        std::uint32_t actions = 0;
+        for (std::uint32_t i = 1; i <= 20; ++i) {
+            const std::string name = "P" + std::to_string(i);
+            if (i != 9 && i != 11 && i != 1 && i != 5 && i != 13 && i != 17) {
+                m.place(name).action = ActionIndex{actions++};
+            }
+        }
+        for (const char* place : {"P1", "P5", "P13", "P17"}) {
+            add_walk(m, place, place == std::string("P5") ? 2 : 3, actions);
+        }
+    }
     return m.net();
 }
 
@@ -112,6 +174,22 @@ TEST_CASE("the ball game keeps its five invariants after every firing [law]") {
         REQUIRE(sum({"P9", "P3", "P10"}) == run.tokens("P14"));
         REQUIRE(sum({"P11", "P19", "P12"}) == run.tokens("P6"));
     }
+}
+
+TEST_CASE(
+    "the ball game with its walks plays on, and a snapshot of it has at most 500 bytes [law]") {
+    QuietHost host;
+    EngineOptions options;
+    options.host = &host;
+    Run run(ball_game(true), nullptr, options);
+    std::size_t most = 0;
+    for (int i = 0; i < 2000; ++i) {
+        REQUIRE(run.engine.step() == Engine::Outcome::kFired);
+        most = std::max(most, write_state(run.net, run.engine.save()).size());
+    }
+    CHECK(run.engine.state().now > seconds(40).ticks);
+    CHECK(most <= 500);
+    MESSAGE("largest snapshot: " << most << " bytes");
 }
 
 TEST_CASE("of the three arcs only t2 is enabled [unit]") {
