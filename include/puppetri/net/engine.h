@@ -81,6 +81,11 @@ class Engine final : private Code::Reader {
     const Diagnostics& notes() const { return notes_; }
 
  private:
+    static constexpr std::uint32_t kFresh = 1, kRaced = 2, kStatus = 3;  // of Hot::candidate
+    static constexpr std::size_t kAhead = 16;  // so many firings ahead memory is asked for
+    static constexpr std::size_t kManyTickets =
+        1024;  // from here on tables lie outside the nearest cache
+
     // All that an ordinary firing reads of a transition, in one cache line.
     struct alignas(64) Hot {
         std::uint32_t unsatisfied = 0;  // conditions on counts that do not hold
@@ -117,7 +122,7 @@ class Engine final : private Code::Reader {
 
     Value read(std::uint32_t kind, std::uint32_t index) const override;
 
-    // engine.cpp
+    // engine.cpp, lottery.cpp
     void rebuild();
     void enter(std::uint32_t t);
     void leave(std::uint32_t t);
