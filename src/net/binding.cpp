@@ -81,10 +81,11 @@ void Engine::unbind(const ArcTable& arc, std::uint32_t mark) {
     }
 }
 
-// Arcs that take share no token; arcs that read share none of theirs.
+// Arcs that take share no token; of those that read, parallel ones of one kind add.
 bool Engine::chosen_before(const ArcTable& arc, std::uint32_t slot) const {
     for (const Chosen& c : chosen_) {
-        if (c.rich == arc.rich && c.slot == slot && takes_token(c.kind) == takes_token(arc.kind)) {
+        if (c.rich == arc.rich && c.slot == slot &&
+            (takes_token(c.kind) ? takes_token(arc.kind) : c.kind == arc.kind)) {
             return true;
         }
     }

@@ -174,7 +174,7 @@ TEST_CASE("under the random chooser every run is one of the oracle's [oracle]") 
         const OracleBounds bounds{.until = 12 * kRandomNetUnit, .firings = 12, .runs = 5000};
         for (const std::uint64_t seed : {1u, 2u, 3u}) {
             const Played played = play(draft, *net, bounds, nullptr, seed);
-            if (!oracle_accepts(draft, played.firings, bounds)) {
+            if (oracle_accepts(draft, played.firings, bounds) == false) {
                 ++failures;
                 FAIL_CHECK("net " << i << " seed " << seed << "\n"
                                   << show(draft) << played.notation);

@@ -370,7 +370,14 @@ class Interpreter {
                 Binding scratch = so_far;
                 count += matches(arc, *token, scratch) ? 1 : 0;
             }
-            return count < arc.weight ? bindings_from(t, i + 1, so_far) : std::vector<Binding>{};
+            // Parallel arcs of one kind add; with patterns each counts its own.
+            std::int64_t allowed = 0;
+            for (const ArcDraft& other : t.inputs) {
+                const bool parallel = other.kind == arc.kind && other.place == arc.place &&
+                                      other.pattern.empty() && arc.pattern.empty();
+                allowed += parallel || &other == &arc ? other.weight : 0;
+            }
+            return count < allowed ? bindings_from(t, i + 1, so_far) : std::vector<Binding>{};
         }
         if (arc.kind == ArcKind::kTakeAll || arc.kind == ArcKind::kTakeAllNow) {
             Binding next = so_far;
@@ -791,13 +798,14 @@ std::optional<std::set<OracleRun>> oracle_runs(const net::NetDraft& draft,
     return runs;
 }
 
-bool oracle_accepts(const net::NetDraft& draft, const std::vector<OracleFiring>& firings,
-                    const OracleBounds& bounds) {
+std::optional<bool> oracle_accepts(const net::NetDraft& draft,
+                                   const std::vector<OracleFiring>& firings,
+                                   const OracleBounds& bounds) {
     Script script;
     std::size_t tried = 0;
     do {
         if (++tried > bounds.runs) {
-            return false;
+            return std::nullopt;
         }
         Interpreter run(draft, bounds, script, &firings);
         if (run.play()) {

@@ -41,10 +41,11 @@ using OracleRun = std::string;
 std::optional<std::set<OracleRun>> oracle_runs(const net::NetDraft& draft,
                                                const OracleBounds& bounds);
 
-// Whether some choices lead to exactly these firings (of a run that ended by `bounds`).
-// Needs   a net without intervals and distributions.
-bool oracle_accepts(const net::NetDraft& draft, const std::vector<OracleFiring>& firings,
-                    const OracleBounds& bounds);
+// Whether some choices lead to exactly these firings; nullopt: more than bounds.runs tried, none
+// did; (of a run that ended by `bounds`). Needs   a net without intervals and distributions.
+std::optional<bool> oracle_accepts(const net::NetDraft& draft,
+                                   const std::vector<OracleFiring>& firings,
+                                   const OracleBounds& bounds);
 
 // The same notation for a run of somebody else.
 OracleRun oracle_notation(

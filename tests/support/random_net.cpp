@@ -254,13 +254,13 @@ class Generator {
             }
             t.inputs.push_back(std::move(a));
         }
-        if (has_.reads && chance(50)) {
+        while (has_.reads && chance(40)) {
             ArcDraft a =
                 arc(chance(50) ? ArcKind::kRead : ArcKind::kReadNow, any_place(), weight());
             add_pattern(t, a, a.weight == 1);
             t.inputs.push_back(std::move(a));
         }
-        if (has_.inhibitors && chance(50)) {
+        while (has_.inhibitors && chance(40)) {
             ArcDraft a =
                 arc(chance(60) ? ArcKind::kUnless : ArcKind::kUnlessReady, any_place(), weight());
             add_pattern(t, a, false);
