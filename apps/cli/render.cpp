@@ -14,6 +14,7 @@
 #include "performing.h"
 #include "puppetri/base/frame_rate.h"
 #include "puppetri/io/atomic_file.h"
+#include "puppetri/io/json_writer.h"
 #include "puppetri/render/film.h"
 #include "terminal.h"
 
@@ -28,6 +29,7 @@ struct Plan {
     bool rate_given = false;
     std::optional<Frames> frames;
     std::string camera;
+    bool json = false;
 };
 
 // A natural number of at most nine digits.
@@ -112,6 +114,7 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
     }
     plan.format.threads = static_cast<int>(threads);
     plan.camera = arguments.text("--camera");
+    plan.json = arguments.given("--json");
     return problems;
 }
 
@@ -171,6 +174,22 @@ int fail(const render::FilmError& error) {
     return kFailed;
 }
 
+// Says what was made: for people on stderr, for programs as JSON on stdout.
+void tell(const Plan& plan, const std::string& file) {
+    say("wrote " + file);
+    if (plan.json) {
+        io::JsonWriter json;
+        json.begin_object().member("file", file);
+        json.member("width", static_cast<std::int64_t>(plan.format.width));
+        json.member("height", static_cast<std::int64_t>(plan.format.height));
+        json.member("frames_per_second", plan.format.rate.per_second());
+        json.member("first_frame", plan.format.first_frame)
+            .member("last_frame", plan.format.last_frame);
+        json.end_object();
+        std::printf("%s\n", json.text().c_str());
+    }
+}
+
 int make(const Plan& plan, const render::RenderScene& scene) {
     const render::FilmFormat& format = plan.format;
     const bool pictures = plan.ending == ".png";
@@ -189,7 +208,7 @@ int make(const Plan& plan, const render::RenderScene& scene) {
         if (const render::FilmStatus status = draw_film(scene, format, watched); !status) {
             return fail(status.error());
         }
-        say("wrote " + pattern);
+        tell(plan, pattern);
         return kFine;
     }
     Checked<io::PendingFile> pending = io::PendingFile::open(plan.output);
@@ -212,7 +231,7 @@ int make(const Plan& plan, const render::RenderScene& scene) {
     if (const Status status = pending->commit(); !status) {
         return fail(film_error(status.error()));
     }
-    say("wrote " + plan.output);
+    tell(plan, plan.output);
     return kFine;
 }
 
@@ -294,7 +313,8 @@ Command render_command() {
                  {"--camera", Value::kText, "NAME",
                   "which of the scene's cameras (default: the first)", false},
                  {"--threads", Value::kInteger, "N",
-                  "pictures drawn at once (default: as many as the machine has cores)", false}}),
+                  "pictures drawn at once (default: as many as the machine has cores)", false},
+                 {"--json", Value::kFlag, "", "what was made as JSON on stdout"}}),
             run};
 }
 

@@ -80,6 +80,7 @@ Mesh make_stick_mesh(const Skeleton& skeleton, const Palette& palette) {
             const double r = 0.42 * length(one.end_site_joint);
             const Vec3 middle =
                 model_from_joint[j].translation + Vec3{0, length(one.end_site_joint) - r, 0.01 * h};
+            bone(j, middle);
             append_revolution(mesh, ball(r, 14), 24, {{}, middle}, kHead, &joint);
             const Transform nose{about_x(kPi / 2), middle + Vec3{0, -0.1 * r, 0.9 * r}};
             append_revolution(mesh, rod(0.5 * r, 0.22 * r), kSectors, nose, kJoints, &joint);
