@@ -330,7 +330,8 @@ class Planner {
                               : pitch_for(side, landing, pelvis, turn_at(strike), kLanding, lowest,
                                           radians(18), radians(38));
         }
-        const double flat = last_ ? plan_.duration_s
+        // Steps shorter than a tenth of a second land late: the net may ask for anything.
+        const double flat = last_ ? std::fmax(plan_.duration_s, strike + 0.02)
                                   : strike + kFlatAfterStrike * n_ *
                                                  std::sqrt(std::fmax(strike_to, 0) / radians(22));
         Motion1 start = swing_.pitch;

@@ -33,7 +33,6 @@ constexpr LimbSet kLegs = limbs_of({Limb::kLeftLeg, Limb::kRightLeg});
 constexpr LimbSet kArms = limbs_of({Limb::kLeftArm, Limb::kRightArm});
 constexpr LimbSet kWhole = limbs_of(
     {Limb::kPelvis, Limb::kBody, Limb::kLeftLeg, Limb::kRightLeg, Limb::kLeftArm, Limb::kRightArm});
-constexpr LimbSet kUpper = limbs_of({Limb::kPelvis, Limb::kBody, Limb::kLeftArm, Limb::kRightArm});
 
 constexpr Parameter kArmsParameter{.name = "arms",
                                    .types = types({kMovement}),
@@ -233,7 +232,7 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .doc = "swings this arm forward"},
     {.name = "throw",
      .parameters = kThrow,
-     .limbs = kUpper,
+     .limbs = kWhole,
      .shortest = milliseconds(500),
      .longest = milliseconds(1500),
      .doc =

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// What happens when a token arrives: a movement is prepared and put in charge of its limbs, or a
+// prop begins to fly.
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/ball_game.h"
+#include "puppetri/motion/library.h"
+#include "puppetri/motion/turn.h"
+#include "stage_data.h"
+
+namespace puppetri::stage {
+namespace {
+
+constexpr double kFastFlight_m_s = 9, kFarFlight_m = 6;
+
+// The six charges of an actor as one movement, for what goes on below a movement that the stage
+// adds.
+class Goes final : public motion::Movement {
+ public:
+    Goes(const ActorTimeline& timeline, SimTime at) : start_(at) {
+        limbs = motion::kAllLimbs;
+        for (int i = 0; i < motion::kLimbCount; ++i) {
+            const Limb limb = static_cast<Limb>(i);
+            Charge charge = timeline.in_charge(limb, at);
+            charge.from = SimTime{-1};
+            timeline_.take(motion::limb_set(limb), charge);
+        }
+    }
+    void sample(double t_s, Controls& out) const override {
+        timeline_.sample(start_ + SimTime{static_cast<std::int64_t>(t_s * kTicksPerSecond)}, out);
+    }
+
+ private:
+    SimTime start_;
+    ActorTimeline timeline_;
+};
+
+}  // namespace
+
+SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& call,
+                                 SimTime duration) {
+    Activity& activity = activities[number];
+    activity.actor = call.subject.actor;
+    PUP_REQUIRE(activity.actor.value < take.actors.size());
+    attend(activity.actor, call);
+    const MotionContext context = context_of(activity.actor, now, duration);
+    const Seen seen = look_around(now);
+    const motion::Surroundings around{seen.actors, seen.props, seen.sets, activity.actor,
+                                      held_by(activity.actor, now)};
+    Diagnostics notes;
+    Checked<motion::Prepared> prepared = motion::prepare(call, context, around, notes);
+    report(activity.action, notes);
+    if (!prepared) {
+        report(activity.action, prepared.error());
+        return SimTime{-1};
+    }
+    activity.movement = prepared->movement;
+    const LimbSet limbs = activity.movement->limbs;
+    const ActorTimeline& timeline = take.actors[activity.actor.value].timeline;
+    for (int i = 0; i < motion::kLimbCount; ++i) {
+        const std::uint32_t owner = timeline.in_charge(static_cast<Limb>(i), now).owner;
+        if (limbs.has(static_cast<Limb>(i)) && owner != ~0u && activities[owner].left > now) {
+            overlaps.push_back({owner, number});
+        }
+    }
+    take_limbs(activity.actor, limbs, activity.movement, number);
+    if (limbs.has(Limb::kBody) || prepared->gaze.kind != motion::GazeKind::kOwn) {
+        take.actors[activity.actor.value].gazes.push_back({now, prepared->gaze});
+    }
+    Waiting& wait = waiting[activity.actor.value];
+    if (prepared->catches_at_world) {
+        wait = {prepared->prop, *prepared->catches_at_world, number};
+    } else if (limbs.has(Limb::kLeftArm) || limbs.has(Limb::kRightArm)) {
+        wait = {};
+    }
+    if (prepared->takes_prop) {
+        PropTimeline& line = take.props[prepared->prop.value];
+        const Transform prop = take.world_from_prop(prepared->prop, now, true);
+        const Transform hands =
+            take.between_hands(activity.actor, take.radius(prepared->prop), now);
+        line.take({.from = now,
+                   .kind = Holding::kHands,
+                   .actor = activity.actor,
+                   .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation)});
+    }
+    if (prepared->releases_prop) {
+        activity.releases = prepared->prop;
+        const Release release{now + activity.movement->duration, number};
+        releases.insert(
+            std::upper_bound(releases.begin(), releases.end(), release,
+                             [](const Release& a, const Release& b) { return a.at < b.at; }),
+            release);
+    }
+    ScoreEntry& row = take.score[activity.row];
+    row.actor = play.cast.actors[activity.actor.value].name;
+    row.limbs = limbs;
+    row.prop = prepared->prop.valid() ? play.cast.props[prepared->prop.value].name : "";
+    return activity.movement->duration;
+}
+
+// No leg will be off the floor from now on.
+bool Stage::Data::planted(ActorIndex actor) const {
+    const ActorTimeline& timeline = take.actors[actor.value].timeline;
+    for (const Limb leg : {Limb::kLeftLeg, Limb::kRightLeg}) {
+        const Charge& charge = timeline.in_charge(leg, now);
+        for (const motion::PhaseSpan& span : charge.movement->phases) {
+            if (span.limb == leg && span.phase == motion::Phase::kSwing &&
+                charge.start + span.end > now) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+SimTime Stage::Data::begin_flight(std::uint32_t number, const motion::BoundCall& call,
+                                  SimTime duration) {
+    Activity& activity = activities[number];
+    const PropIndex prop = call.subject.prop;
+    PUP_REQUIRE(prop.value < take.props.size());
+    const Transform from = take.world_from_prop(prop, now, true);
+    const motion::ArgumentValue* to = call.find("to");
+    PUP_REQUIRE(to != nullptr);
+    const ActorIndex* catcher = std::get_if<ActorIndex>(to);
+    Vec3 target;
+    if (catcher == nullptr) {
+        target = std::get<Vec3>(*to);
+    } else if (waiting[catcher->value].prop == prop) {
+        target = waiting[catcher->value].at_world;
+    } else {
+        Controls controls;
+        take.actors[catcher->value].timeline.sample(now, controls, true);
+        target = motion::catching_point(*take.actors[catcher->value].figure, controls);
+    }
+    const bool prescribed = duration.ticks > 0;
+    motion::Flight flight{
+        .start = now,
+        .duration = prescribed ? duration : motion::flight_duration(from.translation, target),
+        .start_world = from.translation,
+        .velocity_world = {},
+        .start_rotation_world = from.rotation,
+        .spin_world = {},
+        .radius_m = take.radius(prop)};
+    flight.velocity_world = motion::launch_velocity(from.translation, target, flight.duration);
+    const Vec3 level{flight.velocity_world.x, 0, flight.velocity_world.z};
+    constexpr double kBackspin_rad_s = 4;  // the fingers roll off below the ball
+    flight.spin_world = cross(normalized(level, {0, 0, 1}), Vec3{0, 1, 0}) * kBackspin_rad_s;
+    const Vec3 way = target - from.translation;
+    if (length(flight.velocity_world) > kFastFlight_m_s) {
+        warn(activity.action, "fast-throw", "the ball would fly faster than 9 m/s",
+             "give it more time, or come closer");
+    }
+    if (length(Vec3{way.x, 0, way.z}) > kFarFlight_m) {
+        warn(activity.action, "far-throw", "the ball would fly farther than 6 m",
+             "let the actors come closer");
+    }
+    const Hold& before = take.props[prop.value].at(now, true);
+    const ActorIndex* named = nullptr;
+    if (const motion::ArgumentValue* thrower = call.find("from")) {
+        named = std::get_if<ActorIndex>(thrower);
+    }
+    take.props[prop.value].take({.from = now,
+                                 .kind = Holding::kFlight,
+                                 .actor = before.kind == Holding::kHands ? before.actor
+                                          : named != nullptr             ? *named
+                                                                         : ActorIndex{},
+                                 .target = catcher != nullptr ? *catcher : ActorIndex{},
+                                 .flight = flight});
+    if (catcher != nullptr) {
+        receive(*catcher, prop, flight);
+    }
+    take.score[activity.row].prop = play.cast.props[prop.value].name;
+    return duration.ticks >= 0 ? duration : flight.duration;
+}
+
+// Who waits for a ball turns to its holder as soon as that one turns to it or begins to throw:
+// since it got ready, the other may have walked on.
+void Stage::Data::attend(ActorIndex thrower, const motion::BoundCall& call) {
+    constexpr double kNearEnough_rad = 0.07, kMost_rad = 1.5, kTurning_rad_s = 2.2;
+    const motion::ArgumentValue* to = call.find(call.movement == "throw" ? "to" : "toward");
+    const ActorIndex* catcher = to != nullptr ? std::get_if<ActorIndex>(to) : nullptr;
+    if (catcher == nullptr || *catcher == thrower || !planted(*catcher)) {
+        return;
+    }
+    Waiting& wait = waiting[catcher->value];
+    if (!wait.prop.valid() || held_by(thrower, now) != wait.prop) {
+        return;
+    }
+    MotionContext context = context_of(*catcher, now, SimTime{-1});
+    Controls other;
+    take.actors[thrower.value].timeline.sample(now, other, true);
+    const double faces =
+        heading_of(motion::pelvis_over_feet(context.figure, context.now).rotation_world);
+    const double turn =
+        turn_between(faces, motion::heading_to(context.now, other.pelvis.position_world));
+    if (std::fabs(turn) < kNearEnough_rad) {
+        return;
+    }
+    const double by = clamp(turn, -kMost_rad, kMost_rad);  // the rest when the throw begins
+    motion::Ready ready =
+        motion::make_ready(context, {.radius_m = take.radius(wait.prop),
+                                     .heading_rad = faces + by,
+                                     .duration_s = std::fmax(0.5, std::fabs(by) / kTurning_rad_s)});
+    wait.at_world = ready.catches_at_world;
+    const std::uint32_t owner =
+        take.actors[catcher->value].timeline.in_charge(Limb::kLeftArm, now).owner;
+    take_limbs(*catcher, motion::kAllLimbs, std::move(ready.movement), owner);
+}
+
+// The hands of whom the ball flies to go to where it will be, if they are free and it is ready or
+// stands.
+void Stage::Data::receive(ActorIndex catcher, PropIndex prop, const motion::Flight& flight) {
+    const bool waits = waiting[catcher.value].prop == prop;
+    if (held_by(catcher, now).valid() || (!waits && !planted(catcher))) {
+        return;
+    }
+    const ActorTimeline& timeline = take.actors[catcher.value].timeline;
+    const std::uint32_t owner = timeline.in_charge(Limb::kLeftArm, now).owner;
+    auto base = std::make_shared<Goes>(timeline, now);
+    MovementPtr movement =
+        motion::make_receive(context_of(catcher, now, SimTime{-1}),
+                             {.base = std::move(base), .base_age_s = 0, .flight = flight});
+    take_limbs(catcher, motion::kBothArms, std::move(movement), owner);
+}
+
+}  // namespace puppetri::stage
