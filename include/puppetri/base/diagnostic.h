@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Diagnostics: what is wrong, where, with which element, and what to do about it. Every parser and checker reports all
-// of its defects in one list; nothing half-loaded is used when the list has an error. Tests compare `code` and `where`,
-// never wording.
+// Diagnostics: what is wrong, where, with which element, and what to do about it. Every parser and
+// checker reports all of its defects in one list; nothing half-loaded is used when the list has an
+// error. Tests compare `code` and `where`, never wording.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,7 +11,8 @@
 
 namespace puppetri {
 
-// A stretch of source text. Lines and columns count from 1, columns in UTF-8 code points; line 0 means "the file".
+// A stretch of source text. Lines and columns count from 1, columns in UTF-8 code points; line 0
+// means "the file".
 struct SourceSpan {
     std::string file;
     std::uint32_t line = 0;
@@ -24,7 +25,7 @@ enum class Severity : std::uint8_t { kNote, kWarning, kError };
 
 struct Diagnostic {
     Severity severity = Severity::kError;
-    std::string code;     // stable, kebab-case: "unknown-name", "wrong-unit"
+    std::string code;  // stable, kebab-case: "unknown-name", "wrong-unit"
     SourceSpan where;
     std::string element;  // what it is about: "place a.to_throw"
     std::string message;  // what is wrong, one sentence without a full stop

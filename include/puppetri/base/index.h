@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Typed indices: a place cannot be passed where a transition is wanted. The default value means "none".
+// Typed indices: a place cannot be passed where a transition is wanted. The default value means
+// "none".
 #pragma once
 #include <compare>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Guards against bugs of the caller. PUP_REQUIRE stands at public doors and is always on; PUP_ASSERT is for debug
-// builds. Neither is for bad input: that is a Result.
+// Guards against bugs of the caller. PUP_REQUIRE stands at public doors and is always on;
+// PUP_ASSERT is for debug builds. Neither is for bad input: that is a Result.
 #pragma once
 
 namespace puppetri {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Result<T, E>: a value or the reason why there is none. Named like std::expected, so that it can become an alias of it.
+// Result<T, E>: a value or the reason why there is none. Named like std::expected, so that it can
+// become an alias of it.
 #pragma once
 #include <utility>
 #include <variant>
@@ -10,17 +11,17 @@ namespace puppetri {
 
 template <class E>
 class Unexpected {
-   public:
+ public:
     constexpr explicit Unexpected(E error) : error_(std::move(error)) {}
     constexpr E& error() { return error_; }
 
-   private:
+ private:
     E error_;
 };
 
 template <class T, class E>
 class [[nodiscard]] Result {
-   public:
+ public:
     using value_type = T;
     using error_type = E;
 
@@ -45,7 +46,7 @@ class [[nodiscard]] Result {
     const E& error() const& { return *checked(std::get_if<1>(&state_)); }
     E&& error() && { return std::move(*checked(std::get_if<1>(&state_))); }
 
-   private:
+ private:
     template <class P>
     static P checked(P pointer) {
         PUP_REQUIRE(pointer != nullptr);
@@ -60,12 +61,13 @@ struct Ok {};
 
 #define PUP_CONCAT_(a, b) a##b
 #define PUP_CONCAT(a, b) PUP_CONCAT_(a, b)
-#define PUP_TRY_(name, declaration, expression)                                \
-    auto name = (expression);                                                  \
-    if (!name.has_value()) {                                                   \
-        return ::puppetri::Unexpected(std::move(name).error());                \
-    }                                                                          \
+#define PUP_TRY_(name, declaration, expression)                 \
+    auto name = (expression);                                   \
+    if (!name.has_value()) {                                    \
+        return ::puppetri::Unexpected(std::move(name).error()); \
+    }                                                           \
     declaration = std::move(name).value()
-// PUP_TRY(T x, f()): x = value of f(), or return f()'s error. Two statements: brace the branch it stands in.
+// PUP_TRY(T x, f()): x = value of f(), or return f()'s error. Two statements: brace the branch it
+// stands in.
 #define PUP_TRY(declaration, expression) \
     PUP_TRY_(PUP_CONCAT(pup_try_, __LINE__), declaration, expression)

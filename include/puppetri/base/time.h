@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Model time: an int64 count of ticks of 1/705 600 000 s, which all usual frame and audio rates divide.
+// Model time: an int64 count of ticks of 1/705 600 000 s, which all usual frame and audio rates
+// divide.
 #pragma once
 #include <compare>
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A skinned mesh: triangles bound to at most four joints per vertex, in the rest pose's model space.
+// A skinned mesh: triangles bound to at most four joints per vertex, in the rest pose's model
+// space.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,11 +27,12 @@ struct MeshPart {
 };
 
 struct Mesh {
-    std::vector<std::array<float, 3>> positions;           // model space of the rest pose, metres
-    std::vector<std::array<float, 3>> normals;             // unit, one per position
-    std::vector<std::array<std::uint16_t, 4>> joints;      // one per position; empty for a rigid mesh (a prop)
-    std::vector<std::array<float, 4>> weights;             // sum to 1, non-negative, unused slots 0
-    std::vector<std::array<std::uint32_t, 3>> triangles;   // counter-clockwise seen from outside
+    std::vector<std::array<float, 3>> positions;  // model space of the rest pose, metres
+    std::vector<std::array<float, 3>> normals;    // unit, one per position
+    std::vector<std::array<std::uint16_t, 4>>
+        joints;                                 // one per position; empty for a rigid mesh (a prop)
+    std::vector<std::array<float, 4>> weights;  // sum to 1, non-negative, unused slots 0
+    std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
     std::vector<MeshPart> parts;
     std::vector<Material> materials;
 };

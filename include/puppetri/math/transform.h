@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Vectors, unit quaternions (stored x y z w) and rigid transforms in double precision. Right-handed, +Y up, metres,
-// radians. Transforms read right to left and neighbours cancel: world_from_joint = world_from_model * model_from_joint.
+// Vectors, unit quaternions (stored x y z w) and rigid transforms in double precision.
+// Right-handed, +Y up, metres, radians. Transforms read right to left and neighbours cancel:
+// world_from_joint = world_from_model * model_from_joint.
 #pragma once
 #include <cmath>
 
@@ -33,8 +34,10 @@ struct Quat {
 };
 // First b, then a.
 constexpr Quat operator*(Quat a, Quat b) {
-    return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-            a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+    return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+            a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+            a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+            a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 constexpr Quat conjugate(Quat q) { return {-q.x, -q.y, -q.z, q.w}; }
 constexpr Vec3 rotate(Quat q, Vec3 v) {
@@ -52,7 +55,9 @@ struct Transform {
 constexpr Transform operator*(const Transform& a, const Transform& b) {
     return {a.rotation * b.rotation, a.translation + rotate(a.rotation, b.translation)};
 }
-constexpr Vec3 operator*(const Transform& a, Vec3 point) { return a.translation + rotate(a.rotation, point); }
+constexpr Vec3 operator*(const Transform& a, Vec3 point) {
+    return a.translation + rotate(a.rotation, point);
+}
 constexpr Transform inverse(const Transform& a) {
     const Quat r = conjugate(a.rotation);
     return {r, rotate(r, -a.translation)};

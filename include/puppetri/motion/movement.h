@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A movement that has been prepared: it knows how long it takes, where it begins and ends, what happens inside, and
-// answers its controls at any time. Preparing is what the factories of the movement library do (movement_library.h);
-// what is here is the result, immutable, asked in any order, from any thread.
+// A movement that has been prepared: it knows how long it takes, where it begins and ends, what
+// happens inside, and answers its controls at any time. Preparing is what the factories of the
+// movement library do (movement_library.h); what is here is the result, immutable, asked in any
+// order, from any thread.
 #pragma once
 #include <memory>
 #include <string>
@@ -21,8 +22,9 @@ struct PhaseSpan {
     SimTime begin, end;
 };
 
-// Something that happens at an instant inside a movement: "foot_strike", "foot_off", "release", "catch". It becomes an
-// occurrence of the event NAME of the place that runs the movement and a marker in exported files.
+// Something that happens at an instant inside a movement: "foot_strike", "foot_off", "release",
+// "catch". It becomes an occurrence of the event NAME of the place that runs the movement and a
+// marker in exported files.
 struct MovementEvent {
     SimTime after_start;
     std::string name;
@@ -30,7 +32,7 @@ struct MovementEvent {
 };
 
 class Movement {
-   public:
+ public:
     virtual ~Movement() = default;
 
     LimbSet limbs;                      // what sample writes
@@ -38,9 +40,9 @@ class Movement {
     std::vector<PhaseSpan> phases;      // ordered by limb, then begin
     std::vector<MovementEvent> events;  // ordered by time
 
-    // Writes the controls of `limbs`, and nothing else, at t seconds after the start. Beyond the duration a movement
-    // goes on as a living rest (a standing figure keeps breathing, a carrying hand keeps carrying), since the next may
-    // be late. Needs t >= 0. Cost: no allocation.
+    // Writes the controls of `limbs`, and nothing else, at t seconds after the start. Beyond the
+    // duration a movement goes on as a living rest (a standing figure keeps breathing, a carrying
+    // hand keeps carrying), since the next may be late. Needs t >= 0. Cost: no allocation.
     virtual void sample(double t_s, Controls& out) const = 0;
 };
 
