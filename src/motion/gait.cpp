@@ -37,8 +37,8 @@ class Step final : public Movement {
           plan_(plan_step(context, spec)),
           living_(context.figure, context.seed, 1) {
         limbs = spec.limbs;
-        duration =
-            context.duration.ticks > 0 ? context.duration : whole_milliseconds(plan_.duration_s);
+        duration = context.duration.ticks > 0 ? context.duration
+                                              : whole_milliseconds(step_duration_s(spec));
         tell_phases();
         constexpr double h = 1e-4;
         const Controls own = own_at(0), later = own_at(h);

@@ -46,10 +46,7 @@ class Planner {
           support_side_(other(spec.transfer)),
           swing_(foot_state(f_, context, spec.transfer)),
           support_(foot_state(f_, context, support_side_)) {
-        plan_.duration_s = step_duration_s(spec);
-        if (context.duration.ticks > 0) {
-            plan_.duration_s = context.duration.seconds();
-        }
+        plan_.duration_s = plan_duration_s(context, spec);
         whole_ = spec.kind == StepKind::kWhole;
         first_ = spec.kind == StepKind::kFirstHalf;
         last_ = spec.kind == StepKind::kLastHalf;
@@ -509,6 +506,12 @@ class Planner {
 };
 
 }  // namespace
+
+double plan_duration_s(const MotionContext& context, const StepSpec& spec) {
+    const double T =
+        context.duration.ticks > 0 ? context.duration.seconds() : step_duration_s(spec);
+    return std::fmax(T, spec.kind == StepKind::kWhole ? 0.15 : 0.1);
+}
 
 StepPlan plan_step(const MotionContext& context, const StepSpec& spec) {
     return spec.duty_factor < 0.495 ? plan_run(context, spec) : Planner(context, spec).plan();

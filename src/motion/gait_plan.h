@@ -27,6 +27,9 @@ struct StepPlan {
     double lean_rad = 0;  // largest forward lean of the trunk during this step beyond the usual
 };
 
+// What is planned takes a sixth of a second at least, half steps a tenth: a net that allows less
+// cuts the movement there, and the next goes on from that pose.
+double plan_duration_s(const MotionContext& context, const StepSpec& spec);
 StepPlan plan_step(const MotionContext& context, const StepSpec& spec);
 StepPlan plan_run(const MotionContext& context,
                   const StepSpec& spec);  // below a duty factor of 0.5

@@ -34,10 +34,13 @@ class RunPlanner {
           support_side_(other(spec.transfer)),
           swing_(foot_state(f_, context, spec.transfer)),
           support_(foot_state(f_, context, support_side_)) {
-        T_ = context.duration.ticks > 0 ? context.duration.seconds() : step_duration_s(spec);
+        T_ = plan_duration_s(context, spec);
         first_ = spec.kind == StepKind::kFirstHalf;
         last_ = spec.kind == StepKind::kLastHalf;
-        n_ = spec.kind == StepKind::kWhole ? T_ : 2 * T_;
+        // A first half step in the air is no start from rest: it goes on as a short whole one.
+        const bool flying = first_ && !support_.planted;
+        first_ = first_ && !flying;
+        n_ = spec.kind == StepKind::kWhole || flying ? T_ : 2 * T_;
         // While a foot stands the body travels by twice the duty factor times the stroke: as far as
         // a leg reaches.
         const double duty = clamp(spec.duty_factor, 0.2, 0.5);
@@ -245,7 +248,7 @@ class RunPlanner {
                              {strike, {}}));
         } else {
             std::vector<Waypoint1> way;
-            if (last_) {
+            if (last_ || first_) {
                 way = {{0.32 * strike, radians(-40)}, {0.68 * strike, radians(-6)}};
             } else {
                 if (0.28 * swing_s_ - flight_ > 0.02) {

@@ -39,8 +39,7 @@ class Turn final : public Movement {
         angle_ = turn_between(from_, spec.heading_rad);
         duration =
             context.duration.ticks > 0 ? context.duration : whole_milliseconds(spec.duration_s);
-        T_ = duration.seconds();
-        PUP_REQUIRE(T_ > 0);
+        T_ = std::fmax(duration.seconds(), 0.2);  // a net that allows less cuts the turn there
         plan_feet(context);
         plan_pelvis(context);
         constexpr double h = 1e-4;

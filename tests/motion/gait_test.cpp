@@ -353,3 +353,43 @@ TEST_CASE(
         CHECK(m.limit_excess_deg.value < 1e-4);
     }
 }
+
+TEST_CASE("absurd durations, strokes and duty factors give a movement too [hostile]") {
+    std::uint32_t state = 9;
+    auto next = [&](int n) {
+        return static_cast<int>((state = state * 1664525u + 1013904223u) >> 8) % n;
+    };
+    const double durations[] = {0.0005, 0.01, 0.042, 0.1, 0.3, 1, 7};
+    const double strokes[] = {0, 0.001, 0.2, 0.6, 1.5, 40};
+    const double duties[] = {0.0, 0.2, 0.35, 0.49, 0.5, 0.51, 0.62, 0.8, 0.95};
+    for (const double height : {0.5, 1.1, 1.75, 3.0}) {
+        const figure::Figure f = figure::make_mannequin(height);
+        figure::Pose pose;
+        for (int trial = 0; trial < 150; ++trial) {
+            Chain chain(f, standing(f, {}, 0));
+            for (int k = 0; k < 4; ++k) {
+                const StepSpec spec{.transfer = next(2) == 0 ? Side::kLeft : Side::kRight,
+                                    .kind = static_cast<StepKind>(next(3)),
+                                    .stroke_m = strokes[next(6)],
+                                    .duration_s = durations[next(7)],
+                                    .duty_factor = duties[next(9)]};
+                const int what = next(8);
+                MovementPtr movement =
+                    what == 0 ? make_turn(chain.context(spec.duration_s), {.heading_rad = 3.0 * k})
+                    : what == 1 ? make_idle(chain.context(spec.duration_s), {})
+                                : make_step(chain.context(), spec);
+                CHECK(movement->duration.ticks > 0);
+                chain.run({std::move(movement)}, step_duration_s(spec));
+            }
+            for (int i = 0; i <= 20; ++i) {
+                const SolveOutcome outcome =
+                    solve_controls(f, chain.at(chain.now_s() * i / 20), pose);
+                CHECK(std::isfinite(outcome.clamped_rad));
+                for (const Transform& t : pose.parent_from_joint) {
+                    CHECK(std::isfinite(t.translation.x + t.translation.y + t.translation.z +
+                                        t.rotation.w));
+                }
+            }
+        }
+    }
+}
