@@ -20,8 +20,8 @@ constexpr std::size_t kMostInline = 16;
 std::int64_t exponential_ticks(double mean_s, std::uint64_t bits) {
     const double seconds = -mean_s * puppetri::log(uniform_from_bits(bits));
     const double exact = seconds * static_cast<double>(kTicksPerSecond);
-    constexpr double kRound =
-        0x1.8p52;  // adding and taking away rounds to a whole number, ties to even
+    // Adding and taking away rounds to a whole number, ties to even
+    constexpr double kRound = 0x1.8p52;
     if (exact < 0x1p51) {
         return static_cast<std::int64_t>((exact + kRound) - kRound);
     }

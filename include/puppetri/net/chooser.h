@@ -26,13 +26,16 @@ enum class ChoiceKind : std::uint8_t {
 
 struct Choice {
     ChoiceKind kind = ChoiceKind::kTie;
-    std::uint32_t element = 0;  // place, transition or sensor; of ties and events: kNone
-    std::uint32_t options =
-        0;              // how many answers there are: 0 .. options - 1; 0: an answer in [low, high]
-    SimTime low, high;  // of durations and delays; a distribution's support
-    SimTime drawn;      // of distributions and intervals: what the element's own stream says
-    std::span<const std::uint32_t> transitions;  // of ties: who competes
-    std::span<const double> odds;                // of ties
+    // Place, transition or sensor; none for ties and events.
+    std::uint32_t element = Index<void>::kNone;
+    // How many answers there are: 0 .. options - 1. If 0, the answer is a time in [low, high].
+    std::uint32_t options = 0;
+    SimTime low, high;
+    // Of distributions and intervals: what the element's own stream says.
+    SimTime drawn;
+    // Of ties: who competes, with which odds.
+    std::span<const std::uint32_t> transitions;
+    std::span<const double> odds;
 };
 
 // An answer: an option, or ticks.
@@ -85,14 +88,14 @@ class RecordingChooser final : public Chooser {
 // true.
 //   ExhaustiveChooser all;
 //   do { engine.restore(start); ... } while (all.next());
-// Of intervals it takes `points` values evenly spread (both ends included); of distributions what
-// the stream says, so that runs differ only by what is discrete; say durations(k) to take k values
-// of their support as well.
+// Of intervals it takes some values evenly spread, both ends included; of distributions what the
+// stream says, so that runs differ by what is discrete.
 class ExhaustiveChooser final : public Chooser {
  public:
     std::int64_t choose(const Choice& choice) override;
     // Moves on to the next sequence. False: all have been taken.
     bool next();
+    // How many values of an interval; 2 unless told.
     void interval_points(std::uint32_t points) { interval_points_ = points; }
 
  private:

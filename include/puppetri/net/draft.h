@@ -130,8 +130,8 @@ enum class DelayMemory : std::uint8_t { kEnabling, kAge, kResample };
 struct DelayDraft {
     DurationDraft duration;
     DelayMemory memory = DelayMemory::kEnabling;
-    std::uint32_t servers =
-        1;  // kInfiniteServers: as many clocks as the transition is enabled times
+    // Of kInfiniteServers: as many clocks as the transition is enabled times
+    std::uint32_t servers = 1;
     static constexpr std::uint32_t kInfiniteServers = ~std::uint32_t{0};
 };
 

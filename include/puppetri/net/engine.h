@@ -83,8 +83,8 @@ class Engine final : private Code::Reader {
  private:
     static constexpr std::uint32_t kFresh = 1, kRaced = 2, kStatus = 3;  // of Hot::candidate
     static constexpr std::size_t kAhead = 16;  // so many firings ahead memory is asked for
-    static constexpr std::size_t kManyTickets =
-        1024;  // from here on tables lie outside the nearest cache
+    // From here on tables lie outside the nearest cache
+    static constexpr std::size_t kManyTickets = 1024;
 
     // All that an ordinary firing reads of a transition, in one cache line.
     struct alignas(64) Hot {

@@ -40,8 +40,8 @@ struct Weighted {
 
 // A transition that waits for a count: at least `threshold`, or (inhibits) fewer.
 struct Watcher {
-    std::uint32_t word =
-        0;  // the transition; the uppermost bits: inhibits, and (of the transition) gated
+    // The transition; the uppermost bits: inhibits, and (of the transition) gated
+    std::uint32_t word = 0;
     std::uint32_t threshold = 1;
     static constexpr std::uint32_t kInhibits = 1u << 31, kGated = 1u << 30;
     std::uint32_t transition() const { return word & (kGated - 1); }
@@ -122,12 +122,12 @@ class Net {
 Checked<NetDraft> lower(const NetDraft& draft);
 
 // Lowers, checks everything, lays out.
-// Fails  with all defects, by code: unknown-index duplicate-name weight-not-positive
-// odds-not-positive
-//        source-without-delay two-writers as-without-sibling fused-disagree rendezvous-disagree
-//        type-mismatch variable-unbound pattern-on-attribute sensor-assigned range-empty
-//        initial-out-of-range negative-duration empty-interval capacity-exceeded refined-not-open
-//        key-missing action-needs-host module-cycle net-too-large
+// Fails  with all defects, by code: unknown-index duplicate-name net-too-large weight-not-positive
+//        odds-not-positive source-without-delay two-writers as-without-sibling fused-disagree
+//        rendezvous-disagree type-mismatch variable-unbound pattern-on-attribute sensor-assigned
+//        range-empty initial-out-of-range negative-duration empty-interval wrong-distribution
+//        auto-without-movement capacity-exceeded refined-not-open key-missing expression-too-deep
+// Gives  notes() with code rounded-to-tick.
 // Cost   O(size).
 Checked<Net> compile(const NetDraft& draft);
 

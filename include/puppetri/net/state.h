@@ -28,8 +28,8 @@ struct Pending {
     static constexpr std::uint32_t kIndexMask = (1u << 30) - 1;
 
     std::int64_t at = 0;
-    std::uint32_t what =
-        0;  // kind and index: of the place, of the place with records, of the delay
+    // Kind and index: of the place, of the place with records, of the delay
+    std::uint32_t what = 0;
     std::uint32_t slot = 0;  // of the token
 };
 

@@ -125,8 +125,8 @@ enum TransitionFlag : std::uint8_t {
     kFiresSpecially = 1,  // more than counts happens when it fires
     kGated = 2,           // satisfied arcs are not enough: guard, binding, delay or event
     kHasOdds = 4,         // odds other than 1
-    kOnlyDelayed =
-        8,  // gated by a delay with one server and enabling memory, and nothing else is special
+    // Gated by a delay with one server and enabling memory, and nothing else is special
+    kOnlyDelayed = 8,
 };
 
 // The arcs of a transition; the row after it says where they end.
@@ -140,10 +140,10 @@ struct TransitionRow {
 
 // What a change of a place reads; the row after it says where its watchers end.
 struct PlaceRow {
-    std::uint32_t ready =
-        0;  // where its watchers of the number of ready tokens begin in `watchers`,
-    std::uint32_t total =
-        0;  // and those of the number of tokens (never of kCount: there both are one)
+    // Where its watchers of the number of ready tokens begin in `watchers`,
+    std::uint32_t ready = 0;
+    // and those of the number of tokens (never of kCount: there both are one)
+    std::uint32_t total = 0;
     std::uint32_t duration = kNoIndex;  // of kTimed and kRich: number in `durations`; kNoIndex: 0
     Watcher first;                      // a copy of watchers[ready], if there is one
     PlaceKind kind = PlaceKind::kCount;
