@@ -152,6 +152,7 @@ BENCHMARK(all)->Name("ball/all")->Unit(benchmark::kMillisecond);
 BENCHMARK(film)
     ->Name("ball/film_1280x720")
     ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Iterations(1);
 BENCHMARK_MAIN();
