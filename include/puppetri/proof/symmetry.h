@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Interchangeable instances: permutations of whole module instances that are automorphisms of the
+// net. Found by names ("pairs.7.ana.has"), verified arc by arc. Markings that differ by such a
+// permutation have the same future up to it, so one of them, the sorted one, stands for all.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "puppetri/proof/plain_net.h"
+#include "puppetri/proof/predicate.h"
+
+namespace puppetri::proof {
+
+struct Symmetry {
+    // `count` instances with `width` places each: places[i * width + k] is the k-th of instance i.
+    // Any two of them may be swapped.
+    struct Group {
+        std::uint32_t count = 0, width = 0, transitions_width = 0;
+        std::vector<std::uint32_t> places;
+        std::vector<std::uint32_t> transitions;  // likewise, with transitions_width
+    };
+    std::vector<Group> groups;  // no place in two of them
+    bool none() const { return groups.empty(); }
+};
+
+// Candidates are subtrees of the dotted names with the same inner names; kept are those where
+// exchanging neighbours maps the net's arcs, levels and flags onto themselves. The initial marking
+// need not be symmetric.
+Symmetry interchangeable_instances(const PlainNet& net,
+                                   std::span<const std::string_view> place_names,
+                                   std::span<const std::string_view> transition_names);
+
+// The marking's representative: in each group the instances' rows of tokens in ascending order.
+void make_canonical(const Symmetry& symmetry, std::span<std::uint32_t> marking);
+
+// The groups whose swaps leave the predicate's meaning as it is (checked on its atoms: a swap maps
+// each conjunction and disjunction onto itself).
+Symmetry respecting(const Symmetry& symmetry, const Predicate& predicate);
+
+}  // namespace puppetri::proof
