@@ -23,7 +23,7 @@ struct Edge {
 
 // What is true in a state as far as the method can tell: on exact graphs may == must.
 struct AtomBits {
-    std::uint32_t atoms = 0;  // per state
+    std::uint32_t atoms = 0;               // per state
     std::vector<std::uint64_t> may, must;  // rows of (atoms + 63) / 64 words
     bool may_hold(std::uint32_t state, std::uint32_t atom) const {
         const std::uint64_t i = std::uint64_t{state} * ((atoms + 63) / 64) + atom / 64;

@@ -29,8 +29,8 @@ struct PlainNet {
     // True if a delay, event or free guard may keep the transition from firing for ever or for a
     // while: it may fire, but does not count as enabled when death is decided.
     std::vector<std::uint8_t> optional;
-    // Why the picture is not the whole net, an element each: "place a.flight has a duration". Empty:
-    // exact.
+    // Why the picture is not the whole net, an element each: "place a.flight has a duration".
+    // Empty: exact.
     std::vector<std::string> left_out;
 
     std::uint32_t place_count() const { return static_cast<std::uint32_t>(initial.size()); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Predicates over markings of a plain net: and, or, not over linear inequalities of token counts and
-// the enabledness of transitions. What reachability, bounds and the atoms of logics come down to.
+// Predicates over markings of a plain net: and, or, not over linear inequalities of token counts
+// and the enabledness of transitions. What reachability, bounds and the atoms of logics come down
+// to.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -59,7 +60,8 @@ struct Predicate {
 };
 
 // A state formula (no temporal operator) as a predicate.
-// Gives  nothing if an atom speaks of data, events, firings, readiness of timed places, the host, or
+// Gives  nothing if an atom speaks of data, events, firings, readiness of timed places, the host,
+// or
 //        counts in a way that is not linear.
 std::optional<Predicate> predicate_of(const net::Net& net, const net::Formula& formula);
 std::optional<LinearSum> linear_sum_of(const net::Net& net, const Expr& expression);
