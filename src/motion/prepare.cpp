@@ -13,6 +13,7 @@
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/library.h"
 #include "puppetri/motion/turn.h"
+#include "times.h"
 
 namespace puppetri::motion {
 namespace {
@@ -132,7 +133,9 @@ void Preparer::finish(MovementPtr main) {
 
 void Preparer::stand() {
     const LimbSet limbs = main_limbs();
-    finish(make_idle(context_, {.limbs = limbs, .duration_s = arguments_.number("lasting")}));
+    finish(make_idle(
+        context_,
+        {.limbs = limbs, .duration_s = standing_time(arguments_.number("lasting")).seconds()}));
 }
 
 // The first half step leaves standing, with the feet side by side; the last one reaches it.
@@ -165,7 +168,7 @@ void advance_over(MotionContext& context, const Movement& movement) {
 }
 
 void Preparer::walk() {
-    const int steps = static_cast<int>(clamp(arguments_.number("steps"), 1, 10000));
+    const int steps = static_cast<int>(walked_steps(arguments_.number("steps")));
     const LimbSet limbs = main_limbs();
     StepSpec spec{.transfer = arguments_.side("side"),
                   .stroke_m = arguments_.number("stroke"),
@@ -314,7 +317,8 @@ void Preparer::arm_swing(double sign) {
     if (around_.holds.valid()) {
         note("hands-full", "the arm that shall swing holds a prop",
              "leave both arms to carry(...)");
-        result_.movement = make_carry(context_, {.radius_m = radius(around_.holds)});
+        result_.movement = make_carry(
+            context_, {.radius_m = radius(around_.holds), .duration_s = ArmSwingSpec{}.duration_s});
         return;
     }
     result_.movement =
@@ -330,7 +334,8 @@ void Preparer::reach() {
     result_.gaze = {.kind = GazeKind::kPoint, .point_world = target};
     if (around_.holds.valid()) {
         note("hands-full", "the hand that shall reach holds a prop", "throw it first");
-        result_.movement = make_carry(context_, {.radius_m = radius(around_.holds)});
+        result_.movement = make_carry(
+            context_, {.radius_m = radius(around_.holds), .duration_s = ReachSpec{}.duration_s});
         return;
     }
     result_.movement =
@@ -388,6 +393,13 @@ Checked<Prepared> Preparer::run() {
 }
 
 }  // namespace
+
+std::int64_t walked_steps(double steps) {
+    return static_cast<std::int64_t>(clamp(steps, 1, 10'000));
+}
+SimTime standing_time(double lasting_s) {
+    return whole_milliseconds(clamp(lasting_s, 0.001, 86'400));
+}
 
 Checked<Prepared> prepare(const BoundCall& call, const MotionContext& context,
                           const Surroundings& around, Diagnostics& notes) {

@@ -51,6 +51,15 @@ void resolve(motion::BoundCall& call, std::span<const std::int64_t> attributes,
 
 }  // namespace
 
+std::vector<motion::DurationRange> declared_durations(const Play& play) {
+    std::vector<motion::DurationRange> list;
+    list.reserve(play.actions.size());
+    for (const Action& action : play.actions) {
+        list.push_back(motion::declared_duration(action.call));
+    }
+    return list;
+}
+
 Stage::Stage(Play play) : data_(std::make_unique<Data>(std::move(play))) {}
 Stage::~Stage() = default;
 Stage::Stage(Stage&&) noexcept = default;
@@ -84,6 +93,10 @@ SimTime Stage::begin(net::ActionIndex action, net::ActivityIndex activity, SimTi
     d.raised_by = activity.value;
     if (lasts.ticks < 0) {
         return lasts;
+    }
+    if (duration.ticks < 0 && !motion::declared_duration(a.call).has(lasts)) {
+        d.outside_declared(action, lasts);
+        return SimTime{-1};
     }
     d.take.score.back().end = at + lasts;
     if (!flies) {

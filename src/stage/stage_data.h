@@ -283,6 +283,18 @@ struct Stage::Data {
         diagnostics.push_back({Severity::kWarning, code, a.where, "place " + a.place,
                                std::move(message), std::move(remedy)});
     }
+    // A proof may have relied on the interval: nothing outside it is performed.
+    void outside_declared(net::ActionIndex action, SimTime lasts) {
+        const Action& a = play.actions[action.value];
+        const motion::DurationRange range = motion::declared_duration(a.call);
+        const auto ms = [](SimTime t) { return std::to_string(t.ticks / kTicksPerMillisecond); };
+        diagnostics.push_back(
+            {Severity::kError, "duration-not-declared", a.where, "place " + a.place,
+             "it would take " + ms(lasts) + " ms, but " + a.call.movement + " declares " +
+                 ms(range.shortest) + " to " + ms(range.longest) + " ms for `takes auto`",
+             a.call.movement == "fly" ? "let the actors come closer, or write how long it takes"
+                                      : "write how long it takes"});
+    }
     void report(net::ActionIndex action, const Diagnostics& list) {
         for (const Diagnostic& d : list) {
             if (d.severity == Severity::kWarning) {

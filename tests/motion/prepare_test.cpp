@@ -9,6 +9,7 @@
 #include "doctest/doctest.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/arms.h"
+#include "puppetri/motion/declared_duration.h"
 #include "puppetri/motion/gaze.h"
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
@@ -132,6 +133,64 @@ TEST_CASE("every movement prepares with its defaults, inside its interval, on it
         for (const MovementEvent& event : movement.events) {
             CHECK(event.after_start <= movement.duration);
         }
+    }
+}
+
+TEST_CASE("`takes auto` is what the call declares, whatever its arguments and the state [law]") {
+    Scene scene;
+    for (int k = 0; k < 24; ++k) {
+        // From any heading and place, with and without the ball.
+        const Vec3 place{-1.5 + 0.1 * k, 0, 0.3 * (k % 5)};
+        scene.actors[1].controls = standing(scene.figure, place, 0.5 * k);
+        for (const MovementSignature& m : movement_library()) {
+            if (m.subject == SubjectKind::kProp || m.name == "catch") {
+                continue;
+            }
+            CAPTURE(m.name);
+            CAPTURE(k);
+            BoundCall call = call_of(m);
+            for (const Parameter& p : m.parameters) {
+                if (p.name == "by") {
+                    call.arguments.push_back({"by", 0.7 * k - 8});
+                } else if (p.name == "lasting") {
+                    call.arguments.push_back({"lasting", 0.37 * k - 1});
+                } else if (p.name == "steps") {
+                    call.arguments.push_back({"steps", std::int64_t{k - 1}});
+                } else if (p.name == "half") {
+                    call.arguments.push_back({"half", k % 2 == 0});
+                }
+            }
+            const DurationRange declared = declared_duration(call);
+            CHECK(declared.shortest >= m.shortest);
+            CHECK(declared.longest <= m.longest);
+            for (const std::uint32_t who : {0u, 1u}) {
+                Diagnostics notes;
+                const auto prepared =
+                    prepare(call, scene.context(static_cast<int>(who)), scene.around(who), notes);
+                REQUIRE(prepared);
+                CHECK(declared.has(prepared->movement->duration));
+                CHECK(prepared->movement->duration.ticks % kTicksPerMillisecond == 0);
+            }
+        }
+    }
+}
+
+TEST_CASE("what always takes the same time declares one number [unit]") {
+    auto declared = [](const char* name, std::vector<Argument> arguments) {
+        BoundCall call;
+        call.movement = name;
+        call.arguments = std::move(arguments);
+        return declared_duration(call);
+    };
+    auto ms = [](std::int64_t n) { return SimTime{n * kTicksPerMillisecond}; };
+    CHECK(declared("idle", {{"lasting", 2.5}}) == DurationRange{ms(2500), ms(2500)});
+    CHECK(declared("walk", {{"steps", std::int64_t{3}}}) == DurationRange{ms(2502), ms(2502)});
+    const DurationRange any = declared("walk", {{"steps", TokenAttribute{0}}});
+    CHECK(any.has(ms(834)));
+    CHECK(any.has(ms(834 * 10'000)));
+    for (const char* name : {"throw", "catch", "step", "half_step", "carry", "hold", "reach"}) {
+        CAPTURE(name);
+        CHECK(declared(name, {}).shortest == declared(name, {}).longest);
     }
 }
 

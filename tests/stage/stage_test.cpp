@@ -214,6 +214,24 @@ TEST_CASE("long and fast throws get a warning, at 6 m and 9 m/s [unit]") {
     CHECK(has(hand.stage().diagnostics(), "fast-throw"));
 }
 
+TEST_CASE("a flight longer than any that is declared is refused, with its remedy [unit]") {
+    for (const double away_m : {15.0, 30.0}) {
+        stage::Cast cast = two_players();
+        cast.actors[1].position_world = {away_m, 0, 0};
+        stage::Play play;
+        play.cast = cast;
+        play.actions = {{C::with(C::prop("fly", 0), "to", ActorIndex{1}), "flight", "", {}, {}}};
+        const auto declared = stage::declared_durations(play);
+        REQUIRE(declared.size() == 1);
+        stage::Stage stage(play);
+        const SimTime lasts =
+            stage.begin(net::ActionIndex{0}, net::ActivityIndex{0}, ms(100), {-1}, {});
+        CHECK(declared[0].has(lasts) == (away_m < 16));
+        CHECK((lasts.ticks < 0) ==
+              has(stage.diagnostics(), "duration-not-declared", Severity::kError));
+    }
+}
+
 TEST_CASE(
     "a duration that the net prescribes is kept to the tick, also for throws and flights [unit]") {
     Hand hand(two_players());

@@ -63,7 +63,8 @@ struct MovementSignature {
     std::string_view arms_parameter = {};
     // May stand as a movement argument, since it drives the arms alone (carry, hold, swing, ...).
     bool as_argument = false;
-    // Every `takes auto` lies between these: an assumption of proofs, kept by prepare.
+    // Every `takes auto` lies between these, whatever the arguments: an assumption of proofs, kept
+    // by prepare. declared_duration.h has the interval of one call.
     SimTime shortest = {}, longest = {};
     std::string_view doc = {};  // one line
 };

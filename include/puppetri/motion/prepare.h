@@ -3,6 +3,7 @@
 // (the figure itself in the context, everybody else in the surroundings), and answers a movement
 // with what the stage must know about it.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -57,12 +58,17 @@ struct Prepared {
     Gaze gaze = {};
 };
 
+// Arguments as preparing takes them: 1 to 10 000 steps; 1 ms to a day of standing, in whole
+// milliseconds.
+std::int64_t walked_steps(double steps);
+SimTime standing_time(double lasting_s);
+
 // Prepares a movement of an actor or of one of its limbs.
 // Needs   the call fits its signature (scene has checked names and types) and has no token
 // attributes left. Gives   a movement that starts at context.at from the controls and rates of the
 // context. With a prescribed duration
 //         that is its duration, otherwise its own: a whole millisecond, rounded up, inside the
-//         signature's interval. Warnings (carrying what another holds) come in `notes`.
+//         interval of declared_duration.h. Warnings (carrying what another holds) come in `notes`.
 // Fails   with all reasons why this figure cannot do it now: "out-of-reach" (catching a ball that
 // is elsewhere), ...
 Checked<Prepared> prepare(const BoundCall& call, const MotionContext& context,

@@ -11,6 +11,7 @@
 
 #include "puppetri/base/diagnostic.h"
 #include "puppetri/motion/bound_call.h"
+#include "puppetri/motion/declared_duration.h"
 #include "puppetri/net/host.h"
 #include "puppetri/stage/cast.h"
 #include "puppetri/stage/performance.h"
@@ -38,6 +39,10 @@ struct Play {
     Cast cast = {};
     std::vector<Action> actions = {};
 };
+
+// What every action declares for `takes auto`, by net::ActionIndex: for proofs, which cannot
+// prepare a movement. Every answer of Stage::begin to a negative duration lies inside.
+std::vector<motion::DurationRange> declared_durations(const Play& play);
 
 class Stage final : public net::MovementHost {
  public:
