@@ -40,36 +40,15 @@ class Step final : public Movement {
         duration = context.duration.ticks > 0 ? context.duration
                                               : whole_milliseconds(step_duration_s(spec));
         tell_phases();
-        constexpr double h = 1e-4;
-        const Controls own = own_at(0), later = own_at(h);
-        const ControlsRate rate = rate_between(own, later, h);
-        const double blend_s = std::fmax(0.8 * plan_.duration_s, 0.33);
-        body_ = InertialBody(context.now.body, context.rate, own.body, rate, blend_s);
-        ControlsRate turn_now, turn_own;
-        turn_now.chest_angular_pelvis = context.rate.pelvis_angular_world;
-        turn_own.chest_angular_pelvis = rate.pelvis_angular_world;
-        pelvis_turn_ = InertialBody({context.now.pelvis.rotation_world, {}, 0}, turn_now,
-                                    {own.pelvis.rotation_world, {}, 0}, turn_own, blend_s);
-        for (int i = 0; i < 2; ++i) {
-            arms_[i] = InertialArm(context.now.arms[i], context.rate.arms[i], own.arms[i],
-                                   rate.arms[i], blend_s);
-            swivel_[i] = {context.now.legs[i].swivel_rad, context.rate.legs[i].swivel_rad_s,
-                          blend_s};
-        }
+        join_ = InertialFigure(context, own_at(0), own_at(InertialFigure::kMoment_s),
+                               std::fmax(0.8 * plan_.duration_s, 0.33));
     }
 
     void sample(double t_s, Controls& out) const override {
         const double T = plan_.duration_s;
         const double t = t_s <= T ? t_s : T + kHalt_s * (1 - puppetri::exp(-(t_s - T) / kHalt_s));
         Controls c = own_at(t);
-        BodyControl turn{c.pelvis.rotation_world, {}, 0};
-        pelvis_turn_.apply(t, turn);
-        c.pelvis.rotation_world = turn.pelvis_from_chest;
-        body_.apply(t, c.body);
-        for (int i = 0; i < 2; ++i) {
-            arms_[i].apply(t, c.arms[i]);
-            c.legs[i].swivel_rad = swivel_[i].at(t);
-        }
+        join_.apply(t, c);
         if (t_s > T && spec_.kind == StepKind::kLastHalf) {
             const double settled = smooth_rise(t_s - T, 0.8);
             c.pelvis.position_world =
@@ -173,9 +152,7 @@ class Step final : public Movement {
     StepSpec spec_;
     StepPlan plan_;
     Living living_;
-    InertialBody body_, pelvis_turn_;
-    std::array<InertialArm, 2> arms_;
-    std::array<InertialOffset, 2> swivel_;
+    InertialFigure join_;
 };
 
 }  // namespace

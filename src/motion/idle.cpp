@@ -87,51 +87,31 @@ class Idle final : public Movement {
         for (const Side side : {Side::kLeft, Side::kRight}) {
             home_.arms[index_of(side)] = hanging_arm(figure_, side);
         }
-        // The own motion at the start, its rate, and the differences to the state that was found.
-        constexpr double h = 1e-4;
+        // The own motion at the start and a moment later, against the state that was found.
         Controls own = home_, later = home_;
         living_.add(0, 1, own);
-        living_.add(h, 1, later);
-        const ControlsRate rate = rate_between(own, later, h);
-        const double settle_s = 0.7;
+        living_.add(InertialFigure::kMoment_s, 1, later);
+        constexpr double kSettle_s = 0.7;
+        const Vec3 velocity = (later.pelvis.position_world - own.pelvis.position_world) *
+                              (1 / InertialFigure::kMoment_s);
         pelvis_ = {context.now.pelvis.position_world - own.pelvis.position_world,
-                   context.rate.pelvis_velocity_world - rate.pelvis_velocity_world, settle_s};
-        pelvis_turn_ =
-            InertialBody({context.now.pelvis.rotation_world, {}, 0}, turning(context.rate),
-                         {own.pelvis.rotation_world, {}, 0}, turning(rate), settle_s);
-        body_ = InertialBody(context.now.body, context.rate, own.body, rate, settle_s);
-        for (int i = 0; i < 2; ++i) {
-            arms_[i] = InertialArm(context.now.arms[i], context.rate.arms[i], own.arms[i],
-                                   rate.arms[i], settle_s);
-            swivel_[i] = {context.now.legs[i].swivel_rad, context.rate.legs[i].swivel_rad_s,
-                          settle_s};
-        }
+                   context.rate.pelvis_velocity_world - velocity, kSettle_s};
+        join_ = InertialFigure(context, own, later, kSettle_s);
     }
 
     void sample(double t_s, Controls& out) const override {
         Controls c = home_;
         living_.add(t_s, 1, c);
         c.pelvis.position_world = c.pelvis.position_world + pelvis_.at(t_s);
-        BodyControl turn{c.pelvis.rotation_world, {}, 0};
-        pelvis_turn_.apply(t_s, turn);
-        c.pelvis.rotation_world = turn.pelvis_from_chest;
-        body_.apply(t_s, c.body);
         for (int i = 0; i < 2; ++i) {
             c.legs[i] = feet_[i].at(t_s);
-            c.legs[i].swivel_rad = swivel_[i].at(t_s);
-            arms_[i].apply(t_s, c.arms[i]);
         }
+        join_.apply(t_s, c);
         keep_reach(figure_, {feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
         copy_limbs(limbs, c, out);
     }
 
  private:
-    static ControlsRate turning(const ControlsRate& rate) {
-        ControlsRate r;
-        r.chest_angular_pelvis = rate.pelvis_angular_world;
-        return r;
-    }
-
     void plan_feet(const MotionContext& context) {
         for (const Side side : {Side::kLeft, Side::kRight}) {
             Landing landing = put_down(figure_, context, side);
@@ -153,9 +133,7 @@ class Idle final : public Movement {
     Controls home_;
     std::array<FootPath, 2> feet_;
     InertialOffset3 pelvis_;
-    InertialBody pelvis_turn_, body_;
-    std::array<InertialArm, 2> arms_;
-    std::array<InertialOffset, 2> swivel_;
+    InertialFigure join_;
 };
 
 }  // namespace

@@ -113,4 +113,41 @@ void InertialArm::apply(double t_s, ArmControl& arm) const {
     arm.world_weight += world_weight_.at(t_s);
 }
 
+namespace {
+
+ControlsRate turning_of_pelvis(const ControlsRate& rate) {
+    ControlsRate turning;
+    turning.chest_angular_pelvis = rate.pelvis_angular_world;
+    return turning;
+}
+
+}  // namespace
+
+InertialFigure::InertialFigure(const MotionContext& context, const Controls& own,
+                               const Controls& own_later, double blend_s) {
+    const Controls& now = context.now;
+    const ControlsRate rate = rate_between(own, own_later, kMoment_s);
+    body_ = InertialBody(now.body, context.rate, own.body, rate, blend_s);
+    pelvis_turn_ =
+        InertialBody({now.pelvis.rotation_world, {}, 0}, turning_of_pelvis(context.rate),
+                     {own.pelvis.rotation_world, {}, 0}, turning_of_pelvis(rate), blend_s);
+    for (int i = 0; i < 2; ++i) {
+        arms_[i] =
+            InertialArm(now.arms[i], context.rate.arms[i], own.arms[i], rate.arms[i], blend_s);
+        swivel_[i] = {now.legs[i].swivel_rad - own.legs[i].swivel_rad,
+                      context.rate.legs[i].swivel_rad_s - rate.legs[i].swivel_rad_s, blend_s};
+    }
+}
+
+void InertialFigure::apply(double t_s, Controls& c) const {
+    BodyControl turn{c.pelvis.rotation_world, {}, 0};
+    pelvis_turn_.apply(t_s, turn);
+    c.pelvis.rotation_world = turn.pelvis_from_chest;
+    body_.apply(t_s, c.body);
+    for (int i = 0; i < 2; ++i) {
+        arms_[i].apply(t_s, c.arms[i]);
+        c.legs[i].swivel_rad += swivel_[i].at(t_s);
+    }
+}
+
 }  // namespace puppetri::motion

@@ -42,34 +42,13 @@ class Turn final : public Movement {
         T_ = std::fmax(duration.seconds(), 0.2);  // a net that allows less cuts the turn there
         plan_feet(context);
         plan_pelvis(context);
-        constexpr double h = 1e-4;
-        const Controls own = own_at(0), later = own_at(h);
-        const ControlsRate rate = rate_between(own, later, h);
-        const double blend_s = std::fmin(0.8 * T_, 0.6);
-        body_ = InertialBody(context.now.body, context.rate, own.body, rate, blend_s);
-        ControlsRate turn_now, turn_own;
-        turn_now.chest_angular_pelvis = context.rate.pelvis_angular_world;
-        turn_own.chest_angular_pelvis = rate.pelvis_angular_world;
-        pelvis_turn_ = InertialBody({context.now.pelvis.rotation_world, {}, 0}, turn_now,
-                                    {own.pelvis.rotation_world, {}, 0}, turn_own, blend_s);
-        for (int i = 0; i < 2; ++i) {
-            arms_[i] = InertialArm(context.now.arms[i], context.rate.arms[i], own.arms[i],
-                                   rate.arms[i], blend_s);
-            swivel_[i] = {context.now.legs[i].swivel_rad, context.rate.legs[i].swivel_rad_s,
-                          blend_s};
-        }
+        join_ = InertialFigure(context, own_at(0), own_at(InertialFigure::kMoment_s),
+                               std::fmin(0.8 * T_, 0.6));
     }
 
     void sample(double t_s, Controls& out) const override {
         Controls c = own_at(t_s);
-        BodyControl turn{c.pelvis.rotation_world, {}, 0};
-        pelvis_turn_.apply(t_s, turn);
-        c.pelvis.rotation_world = turn.pelvis_from_chest;
-        body_.apply(t_s, c.body);
-        for (int i = 0; i < 2; ++i) {
-            arms_[i].apply(t_s, c.arms[i]);
-            c.legs[i].swivel_rad = swivel_[i].at(t_s);
-        }
+        join_.apply(t_s, c);
         if (t_s > T_) {
             living_.add(t_s - T_, smooth_rise(t_s - T_, 1.5), c);
         }
@@ -281,9 +260,7 @@ class Turn final : public Movement {
     std::array<FootPath, 2> feet_;
     Curve3 pelvis_;
     Curve1 yaw_;
-    InertialBody body_, pelvis_turn_;
-    std::array<InertialArm, 2> arms_;
-    std::array<InertialOffset, 2> swivel_;
+    InertialFigure join_;
 };
 
 }  // namespace

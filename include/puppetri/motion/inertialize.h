@@ -5,6 +5,8 @@
 // GDC
 //         2018; the quintic of that talk, with rotations as rotation vectors.
 #pragma once
+#include <array>
+
 #include "puppetri/motion/context.h"
 
 namespace puppetri::motion {
@@ -62,6 +64,25 @@ class InertialArm {
     InertialOffset swivel_, relaxed_, spread_, grip_, world_weight_;
     Transform held_world_;
     bool holds_world_ = false;
+};
+
+// Of all in a figure that a movement of the whole body does not plan against what it finds: the
+// rotation of the pelvis, trunk and head, arms, the swivels of the knees. The movement itself joins
+// the pelvis's place and the feet.
+class InertialFigure {
+ public:
+    // Rates of the own controls are taken over this; sample the own ones at 0 and then.
+    static constexpr double kMoment_s = 1e-4;
+
+    InertialFigure() = default;
+    InertialFigure(const MotionContext& context, const Controls& own, const Controls& own_later,
+                   double blend_s);
+    void apply(double t_s, Controls& controls) const;
+
+ private:
+    InertialBody body_, pelvis_turn_;  // the pelvis's rotation in the place of a chest's
+    std::array<InertialArm, 2> arms_;
+    std::array<InertialOffset, 2> swivel_;
 };
 
 }  // namespace puppetri::motion
