@@ -72,8 +72,9 @@ struct ArcLook {
     bool is_output = false;
     std::uint32_t number = 0;  // in TransitionDraft::inputs or outputs
     std::string id;
-    std::string end;       // the id by which the arc names its place: a reference place's, or the place's
-    std::string start;     // and its transition
+    std::string
+        end;  // the id by which the arc names its place: a reference place's, or the place's
+    std::string start;  // and its transition
     ElementLook look;
 };
 

@@ -48,22 +48,92 @@ struct Predicate {
     std::vector<LinearSum> sums;
 
     static Predicate constant(bool value);
+    // Inequalities are brought to one form: factors without a common divisor, the first one
+    // positive; what holds for all counts, or for none, becomes a constant. No limit may be within
+    // one of the ends of the range of 64 bits.
     static Predicate at_most(LinearSum sum, std::int64_t limit);
     static Predicate at_least(LinearSum sum, std::int64_t limit);
     static Predicate enabled(std::vector<std::uint32_t> transitions);
-    static Predicate no_successor(const PlainNet& net);  // dead: none of all is enabled
+    // Dead: none is enabled of the transitions that count when death is decided (not optional).
+    static Predicate no_successor(const PlainNet& net);
+    // Simplified: constants vanish, nested ones are flattened, lists of transitions are merged.
     static Predicate all_of(std::span<const Predicate> parts);
     static Predicate any_of(std::span<const Predicate> parts);
     Predicate negated() const;
 
+    bool is_constant(bool value) const {
+        return nodes.back().op == (value ? Op::kTrue : Op::kFalse);
+    }
+    // Cost  O(nodes + arcs). Who asks often compiles (CompiledPredicate).
     bool holds(const PlainNet& net, std::span<const std::uint32_t> marking) const;
 };
 
+// The same predicate where each place is known to hold at most `upper[place]` tokens: inequalities
+// that this decides become constants.
+Predicate simplified(const Predicate& predicate, const PlainNet& net,
+                     std::span<const std::uint32_t> upper);
+
+// A predicate as a program of tests with two targets each, without stack and without state: enough
+// to be asked in every state of millions. Enabledness becomes tests of counts; the net need not
+// outlive it.
+// Source  jumping code of Boolean expressions, Aho, Lam, Sethi, Ullman: Compilers, section 6.6.
+class CompiledPredicate {
+ public:
+    CompiledPredicate() = default;  // false
+    CompiledPredicate(const PlainNet& net, const Predicate& predicate);
+
+    bool holds(std::span<const std::uint32_t> marking) const {
+        return holds_by([&](std::uint32_t place) { return marking[place]; });
+    }
+    // The same where a functor gives the tokens of a place: for packed states.
+    template <class Count>
+    bool holds_by(Count&& count) const {
+        std::uint32_t at = entry_;
+        while (at < kFalse) {
+            const Test& test = tests_[at];
+            bool yes = false;
+            if ((test.place & kSum) == 0) {
+                yes = count(test.place) >= test.threshold;
+            } else {
+                std::int64_t sum = 0;
+                const Sum& s = sums_[test.place & ~kSum];
+                for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
+                    sum += terms_[i].factor * std::int64_t{count(terms_[i].place)};
+                }
+                yes = sum >= s.limit;
+            }
+            at = yes ? test.yes : test.no;
+        }
+        return at == kTrue;
+    }
+    bool is_constant(bool value) const { return entry_ == (value ? kTrue : kFalse); }
+    // All places that it may look at, ascending.
+    std::vector<std::uint32_t> places() const;
+
+ private:
+    static constexpr std::uint32_t kFalse = ~std::uint32_t{1}, kTrue = ~std::uint32_t{0};
+    static constexpr std::uint32_t kSum = 1u << 31;
+    struct Test {
+        std::uint32_t place = 0;  // at least `threshold` tokens; or kSum | index of a sum
+        std::uint32_t threshold = 0;
+        std::uint32_t yes = 0, no = 0;  // the next test, or kTrue, kFalse
+    };
+    struct Sum {
+        std::uint32_t first = 0, count = 0;  // of terms_
+        std::int64_t limit = 0;              // at least this
+    };
+    std::uint32_t entry_ = kFalse;
+    std::vector<Test> tests_;
+    std::vector<Sum> sums_;
+    std::vector<LinearSum::Term> terms_;
+};
+
 // A state formula (no temporal operator) as a predicate.
-// Gives  nothing if an atom speaks of data, events, firings, readiness of timed places, the host,
-// or
-//        counts in a way that is not linear.
+// Gives  nothing if an atom speaks of data, events, firings, readiness of timed places, the host, or
+//        counts in a way that is not linear; or of the fireability of a transition that is more
+//        than its arcs: with a guard, delay or event, timed places, or beside other priorities.
 std::optional<Predicate> predicate_of(const net::Net& net, const net::Formula& formula);
+// An int expression without a constant part.
 std::optional<LinearSum> linear_sum_of(const net::Net& net, const Expr& expression);
 
 }  // namespace puppetri::proof
