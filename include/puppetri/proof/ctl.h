@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Branching time over graphs: which states satisfy a formula, by labelling, linear in graph times
+// formula. Paths are maximal: they are infinite or end where paths may end (a dead state, or one
+// whose edges are all optional). In a dead state EX is false, AX true, EG a holds if a does.
+//
+// Three-valued: `must` are states where the formula holds for certain, `may` those where it is not
+// excluded. On exact graphs without cuts both are one set. On over-approximations no path is known
+// to be a run, so E-formulas are never certain beyond what holds at once, and A-formulas are never
+// excluded but by that: PROVED and REFUTED stay sound for every mixture of quantifiers.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "puppetri/proof/budget.h"
+#include "puppetri/proof/graph.h"
+#include "puppetri/proof/graph_algorithms.h"
+#include "puppetri/proof/temporal.h"
+
+namespace puppetri::proof {
+
+// A checker for many formulas over one graph: who leads where is computed once, when needed.
+// Source  E. M. Clarke, E. A. Emerson, A. P. Sistla, Automatic verification of finite-state
+//         concurrent systems using temporal logic (1986); three values: G. Bruns, P. Godefroid,
+//         Model checking partial state spaces (CAV 1999).
+class CtlChecker {
+ public:
+    // The graph must live longer.
+    explicit CtlChecker(const Graph& graph) : graph_(graph) {}
+
+    struct Labels {
+        StateBits must, may;
+    };
+    // The states of the graph, by the value of the formula.
+    // Needs  logic kState or kCtl. Atom i of the formula is atom atoms[i] of the graph.
+    // Gives  nothing when the budget ends (time or cancellation).
+    // Cost   O(formula * (states + edges)); 4 bytes per edge for all formulas together, 4 per state
+    //        and 1/4 per state and node of the formula.
+    std::optional<Labels> label(const Temporal& formula, std::span<const std::uint32_t> atoms,
+                                const Budget& budget);
+    // In the initial state.
+    Truth holds(const Temporal& formula, std::span<const std::uint32_t> atoms,
+                const Budget& budget);
+
+    // A path that shows the truth of an E-formula, or the falsity of an A-formula, in the initial
+    // state; through nested operators as far as one path can go.
+    // Gives  nothing where no one path shows it, or the answer is unknown.
+    std::optional<Lasso> evidence(const Temporal& formula, std::span<const std::uint32_t> atoms,
+                                  const Budget& budget);
+
+ private:
+    struct Sets;
+    std::optional<Sets> all_labels(const Temporal& formula, std::span<const std::uint32_t> atoms,
+                                   const Budget& budget);
+    const net::Rows<std::uint32_t>& backwards();
+    StateBits somewhere_next(const StateBits& a);
+    StateBits some_globally(const StateBits& a, bool past_cuts);
+    void or_cut(StateBits& set) const;
+
+    const Graph& graph_;
+    net::Rows<std::uint32_t> predecessors_;
+};
+
+}  // namespace puppetri::proof
