@@ -5,7 +5,6 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,9 +33,10 @@ struct NetLimits {
 // for what they refer to.
 class NetIds {
  public:
-    // In any order; an id that is there already gets more elements.
-    void add_place(std::string_view id, std::span<const net::PlaceIndex> places);
-    void add_transition(std::string_view id, std::span<const net::TransitionIndex> transitions);
+    void add_place(std::string id, std::vector<net::PlaceIndex> places);
+    void add_transition(std::string id, std::vector<net::TransitionIndex> transitions);
+    // To be called once, after the last add and before the first find.
+    void sort();
 
     // Gives  nullptr if the file has no such place or transition.
     // Cost   O(log n).
@@ -72,17 +72,14 @@ struct ArcLook {
     bool is_output = false;
     std::uint32_t number = 0;  // in TransitionDraft::inputs or outputs
     std::string id;
-    std::string
-        end;  // the id by which the arc names its place: a reference place's, or the place's
-    std::string start;  // and its transition
+    std::string source, target;  // as the arc names them: perhaps reference nodes
     ElementLook look;
 };
 
 struct PageLook {
-    static constexpr std::uint32_t kNoParent = ~std::uint32_t{0};
     std::string id, name;
-    std::uint32_t parent = kNoParent;  // an earlier page; kNoParent: stands in the net itself
-    std::string extra;                 // graphics and toolspecific elements
+    std::uint32_t parent = 0;  // an earlier page
+    std::string extra;         // graphics and toolspecific elements
 };
 
 // A reference place or transition.
@@ -94,8 +91,9 @@ struct ReferenceLook {
 
 // Empty, or as long as the draft's lists: who changes the draft empties the look.
 struct NetLook {
-    std::string extra;  // toolspecific elements of the net itself
-    std::vector<PageLook> pages;
+    std::string id;               // of the net
+    std::string extra;            // toolspecific elements of the net itself
+    std::vector<PageLook> pages;  // pages[0] stands for the net itself
     std::vector<ElementLook> places, transitions;
     std::vector<ArcLook> arcs;
     std::vector<ReferenceLook> references;
