@@ -96,6 +96,7 @@ Checked<NetFile> read_pnml(std::string_view text, const std::string& path,
     PnmlDocument document;
     NetFile out;
     out.format = NetFormat::kPnml;
+    out.draft.sources_on_beats = true;
     if (read_pnml_document(text, path, limits, document, defects)) {
         out.draft.name = document.name.empty() ? document.id : document.name;
         if (document.type == PnmlType::kColoured) {

@@ -4,6 +4,7 @@
 #include "check.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "lower.h"
@@ -370,7 +371,7 @@ class Check {
             at.where = arc.where.line != 0 ? &arc.where : &t.where;
             check_pattern(t, arc, at, bound);
         }
-        if (t.inputs.empty() && !t.delay && t.events.empty()) {
+        if (t.inputs.empty() && !t.delay && t.events.empty() && !sources_allowed()) {
             fail(s, "source-without-delay",
                  "fires for ever in one instant: it needs no token, no delay, no event",
                  "give it an input, a delay or an event");
@@ -577,8 +578,31 @@ class Check {
         }
     }
 
+    // Whether the net has no time (docs/semantics.md, "paced") and its draft allows sources there.
+    bool sources_allowed() {
+        if (!net_.sources_on_beats || sources_allowed_) {
+            return net_.sources_on_beats && *sources_allowed_;
+        }
+        bool timeless = net_.schedule.empty();
+        for (const PlaceDraft& p : net_.places) {
+            const DurationDraft d = effective_duration(p);
+            timeless = timeless && (d.kind == DurationKind::kOpen || d.kind == DurationKind::kAs ||
+                                    (d.kind == DurationKind::kConstant && d.a.is_literal() &&
+                                     d.a.literal_value() == 0));
+        }
+        for (const TransitionDraft& t : net_.transitions) {
+            timeless = timeless && !t.delay;
+            for (const OutputDraft& o : t.outputs) {
+                timeless = timeless && !o.lasts;
+            }
+        }
+        sources_allowed_ = timeless;
+        return timeless;
+    }
+
     const NetDraft& net_;
     Diagnostics& defects_;
+    std::optional<bool> sources_allowed_;
 };
 
 }  // namespace

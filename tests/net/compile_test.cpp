@@ -158,6 +158,20 @@ TEST_CASE("each defect has its code [unit]") {
     }
 }
 
+TEST_CASE("sources of foreign nets fire once per beat, in nets without time only [unit]") {
+    Maker m;
+    m.place("a", 0);
+    m.t("source", {}, {"a"});
+    CHECK(m.codes() == Codes{"source-without-delay"});
+    m.draft.sources_on_beats = true;
+    CHECK(m.codes().empty());
+    Run run(m.net());
+    run.until(2.5);
+    CHECK(run.log.text == "0:source 1:source 2:source");
+    m.place("b", 1, lasts(1));
+    CHECK(m.codes() == Codes{"source-without-delay"});
+}
+
 TEST_CASE("all defects are told at once, with their source positions [unit]") {
     Maker m = sound();
     m.draft.transitions[0].inputs[0].weight = 0;

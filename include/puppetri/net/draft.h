@@ -211,6 +211,9 @@ struct RefinementDraft {
 
 struct NetDraft {
     std::string name;
+    // In a net without time, transitions without any input are allowed: one firing per beat. So
+    // nets from elsewhere mean them; scenes do not.
+    bool sources_on_beats = false;
     std::vector<EnumDraft> enums;
     std::vector<PlaceDraft> places;
     std::vector<TransitionDraft> transitions;
