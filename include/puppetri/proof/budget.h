@@ -30,8 +30,8 @@ struct Budget {
     unsigned threads = 1;
 };
 
-// Counts a method's cost against its budget. Cheap: the clock is read once per 4096 calls of tick()
-// or less.
+// Counts a method's cost against its budget. A look reads the clock (about 30 ns): look every few
+// thousand states.
 class Meter {
  public:
     Meter(const Budget& budget, const char* method);
