@@ -14,15 +14,17 @@ namespace {
 // The shape of a walk: angles after the averages of slow adult gait in Winter (2009, chapter 3) and
 // Perry (1992). What is not from there was found by measuring all heights and step counts against
 // the table of good motion (tests/motion/gait_test.cpp); beside each stands what it trades.
-constexpr double kSwingPitch = radians(-46);  // of the foot behind: first guess, fitted so that
-constexpr double kSwingKnee = radians(60);    //   the knee of the swing bends by this
-constexpr double kFlatAfterStrike = 0.17;     // of n: longer drags the sole, shorter slaps it
-constexpr double kHeelRise = 0.26;            // of n, heel off to border: earlier bends the knee
-constexpr double kList = radians(2.5);        // of the pelvis to the free side
-constexpr double kSway_m = 0.0205;            // to either side, at any height: 20 to 50 mm wide
-constexpr double kBoundaryLead = 0.065;       // of the stroke, ahead of the formula at borders:
-                                              //   more eases stopping, less eases going on
-constexpr double kRestLag = 0.01;             // of the stroke: what the living rest makes good
+constexpr double kSwingPitch = radians(-46);     // of the foot behind: first guess, fitted so that
+constexpr double kSwingKnee = radians(60);       //   the knee of the swing bends by this,
+constexpr double kHalfStepKnee = radians(51.5);  //   in half steps, which are quick, by this
+constexpr double kSteepest = radians(-58);       // pitch of a foot that pushes off
+constexpr double kFlatAfterStrike = 0.17;        // of n: longer drags the sole, shorter slaps it
+constexpr double kHeelRise = 0.26;               // of n, heel off to border: earlier bends the knee
+constexpr double kList = radians(2.5);           // of the pelvis to the free side
+constexpr double kSway_m = 0.0205;               // to either side, at any height: 20 to 50 mm wide
+constexpr double kBoundaryLead = 0.065;          // of the stroke, ahead of the formula at borders:
+                                                 //   more eases stopping, less eases going on
+constexpr double kRestLag = 0.01;                // of the stroke: what the living rest makes good
 constexpr double kClearance_m = 0.022;
 // Accelerations of the ankle just before touch down (back, up) and after toe off (ahead). Without
 // them the foot hangs far ahead of the pelvis before it lands and trails behind after it leaves, on
@@ -33,7 +35,13 @@ constexpr double kSetDown_m = 1.6;            // in m / time^2
 // the pelvis turns it by degrees), when it lands (14), pushes off (20), and the shortest of a leg
 // that stands (23.6). From kSlips on a standing foot would leave its print.
 constexpr double kLongest = 0.9974, kLanding = 0.9922, kPushing = 0.985, kShortest = 0.9788;
-constexpr double kSlips = 0.9981;
+constexpr double kSlips = 0.9981, kStanding = 0.9969;
+// Starts and stops of quick walks: swings of half steps shorter than this would bend the knee too
+// fast; accelerations of the pelvis above this would be too sharp, so that it may be off the
+// formula by so much after the start, at the border before the stop (less where the double support
+// is long), and at rest.
+constexpr double kEasySwing_s = 0.32, kHurry_s = 0.035, kEasy_m_s2 = 3.2;
+constexpr double kMostLag_m = 0.09, kMostSlowLead_m = 0.04, kMostRestLag_m = 0.09;
 constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down
 constexpr double kCatch_s = 0.16;        // to put down a foot that should already stand
 
@@ -62,15 +70,17 @@ class Planner {
         plan_frame();
         plan_travel_of_pelvis();
         plan_turns();
+        leave_in_time();
         plan_support_foot();
         swing_pitch_ = kSwingPitch;
         for (int round = 0; round < 4; ++round) {
             plan_swing_foot();
             plan_height_of_pelvis();
             const double wanted =
-                lerp(radians(55), kSwingKnee, clamp((x_ / f_.leg_m - 0.35) / 0.3, 0, 1));
+                whole_ ? lerp(radians(55), kSwingKnee, clamp((x_ / f_.leg_m - 0.35) / 0.3, 0, 1))
+                       : kHalfStepKnee;
             const double missing = wanted - swing_knee();
-            if (std::fabs(missing) < radians(4)) {
+            if (std::fabs(missing) < radians(2)) {
                 break;
             }
             swing_pitch_ = clamp(swing_pitch_ - 0.8 * missing, radians(-75), radians(-10));
@@ -87,8 +97,11 @@ class Planner {
         // they keep their swing from becoming a kick, and use a frame of their ends too.
         const double shift = std::fmin(0.049 * n_, std::fmax(half_, 0) * 0.5);
         const double half = std::fmin(half_, 0.14 * n_);
-        plan_.lift_s = first_ ? shift : last_ ? half - shift : half_;
-        plan_.strike_s = last_ ? T - shift : first_ ? T - half + shift : T - half_;
+        const double hurry = clamp((kEasySwing_s - (T - half)) / 2, 0, kHurry_s);
+        plan_.lift_s = first_ ? std::fmax(shift - hurry, 0.006) : last_ ? half - shift : half_;
+        plan_.strike_s = last_    ? T - std::fmax(shift - hurry, 0.006)
+                         : first_ ? T - std::fmax(half - shift - hurry, 0.01)
+                                  : T - half_;
         plan_.support_strike_s = first_ ? -1 : -half_;
         plan_.support_lift_s = last_ ? T + 10 : T + half_;
         if (!support_.planted) {
@@ -127,18 +140,39 @@ class Planner {
                 rotate(q, world.acceleration)};
     }
 
+    // The way of a half step that comes to rest from a speed: it speeds up, then brakes.
+    double easy_stop_m(double speed, double a) const {
+        const double T = n_ / 2, brakes_s = (T + speed / a) / 2,
+                     before_s = std::fmax(T - brakes_s, 0);
+        return speed * before_s + a * before_s * before_s / 2 + a * brakes_s * brakes_s / 2;
+    }
+
     void plan_travel_of_pelvis() {
         const double T = plan_.duration_s, speed = x_ / n_;
         const Motion3 now =
             to_path({context_.now.pelvis.position_world, context_.rate.pelvis_velocity_world, {}});
         const double midline = -side_ * f_.stance_half_width_m;
+        // A long double support goes slower: the feet are far apart, and legs only so long.
+        const double slow = clamp((half_ / n_ - 0.12) / 0.13, 0, 1);
+        // It may stop a little short of its place: the living rest goes on to it.
         Motion1 to{ahead_of_ankles() - kRestLag * x_, 0, 0};
+        const double stop = easy_stop_m(now.velocity.z, lerp(1.08, 0.95, slow) * kEasy_m_s2);
+        to.position = clamp(now.position.z + stop, to.position - kMostRestLag_m, to.position);
         if (first_) {
-            to = {ahead_of_ankles() + x_ / 2 - 0.004 * x_, 1.7 * speed, 0};
+            // A pelvis that lags makes the reach to the landing foot longer: legs that are short
+            // for the stroke start a little sharper.
+            const double sharp = lerp(0.96, 1.07, clamp((x_ / f_.leg_m - 0.62) / 0.06, 0, 1));
+            const double lag =
+                clamp(x_ / 2 - sharp * kEasy_m_s2 * T * T / 2, 0.004 * x_, kMostLag_m);
+            const double way = x_ / 2 - lag;
+            to = {ahead_of_ankles() + way, std::fmin(1.7 * speed, 1.72 * way / T), 0};
         } else if (whole_) {
-            to = {ahead_of_ankles() + x_ / 2 +
-                      kBoundaryLead * x_ * lerp(0.7, 1, clamp(half_ / (0.1 * n_), 0, 1)),
-                  1.28 * speed, 0};
+            const double border = lerp(1.28, 0.83, slow) * speed;
+            const double lead =
+                std::fmax(kBoundaryLead * x_ * lerp(0.7, 1, clamp(half_ / (0.1 * n_), 0, 1)),
+                          std::fmin(x_ / 2 - easy_stop_m(border, kEasy_m_s2),
+                                    lerp(kMostLag_m, kMostSlowLead_m, slow)));
+            to = {ahead_of_ankles() + x_ / 2 + lead, border, 0};
         }
         plan_.pelvis_path.z = plan_travel({now.position.z, now.velocity.z, 0}, to, T);
         // Over the support foot in the middle, back over the midline at the border, on the way to
@@ -171,6 +205,27 @@ class Planner {
         const Motion1 arm1{last_ ? 0 : side_ * swing, 0, last_ ? 0 : -side_ * swing * bend};
         plan_.arm_swing = minimum_jerk({0, arm0}, {}, {T, arm1});
         plan_.lean_rad = first_ ? radians(4) : last_ ? radians(-3) : 0;
+    }
+
+    // The hind foot leaves before its leg is too short for the hips, whatever the duty factor:
+    // after a start the pelvis is ahead of where a steady walk with a long double support has it.
+    void leave_in_time() {
+        if (first_ || !swing_.planted || !support_.planted) {
+            return;
+        }
+        const Footprint print = footprint_of(f_, spec_.transfer, swing_);
+        const Vec3 hind = path_from_world_ *
+                          ankle_on_print(f_, spec_.transfer, print, {kSteepest, 0, 0}).position;
+        const Vec3 front{0, f_.ankle_height_m, 0};
+        constexpr double kStep_s = 0.005;
+        for (double t = 0.02; t < plan_.lift_s; t += kStep_s) {
+            const Vec3 pelvis = plan_.pelvis_path.at(t).position;
+            if (hips_height(spec_.transfer, hind, pelvis, turn_at(t), kPushing) <
+                hips_height(support_side_, front, pelvis, turn_at(t), kPushing)) {
+                plan_.lift_s = t;
+                return;
+            }
+        }
     }
 
     // Above a duty factor of 0.5 the foot rolls from heel to toe; at 0.5 it just still does.
@@ -213,7 +268,7 @@ class Planner {
         const double height =
             hips_height(other(hind), front_ankle_path, pelvis_path, turn, kPushing);
         return pitch_for(hind, hind_print, pelvis_path, turn, kPushing, height, radians(-8),
-                         radians(-58));
+                         kSteepest);
     }
 
     void plan_support_foot() {
@@ -307,13 +362,16 @@ class Planner {
         // Pitch: heel rise, peak after the lift, through level to toes up, roll down. One curve, so
         // that all is smooth.
         const Footprint print = footprint_of(f_, side, swing_);
-        const double early = plan_.lift_s / (0.049 * n_);
+        const double early = clamp(plan_.lift_s / (0.049 * n_), 0, 1);
         double lift_to = radians(-4) * early * early;
         if (!first_ && planted) {
             const Vec3 front =
                 path_from_world_ * plan_.feet[index_of(support_side_)].at(lift).ankle_world;
             lift_to =
                 lift_pitch(side, print, front, plan_.pelvis_path.at(lift).position, turn_at(lift));
+            // What is under way cannot change at once.
+            const double goes_to = swing_.pitch.position + lift * swing_.pitch.velocity;
+            lift_to = lerp(goes_to, lift_to, clamp((lift - 0.015) / 0.05, 0, 1));
         }
         double strike_to = 0;
         if (rolls()) {
@@ -325,7 +383,7 @@ class Planner {
             const double late = (plan_.duration_s - plan_.strike_s) / (0.049 * n_);
             strike_to = last_ ? radians(5) * late * late
                               : pitch_for(side, landing, pelvis, turn_at(strike), kLanding, lowest,
-                                          radians(18), radians(38));
+                                          radians(8), radians(38));
         }
         // Steps shorter than a tenth of a second land late: the net may ask for anything.
         const double flat = last_ ? std::fmax(plan_.duration_s, strike + 0.02)
@@ -334,15 +392,18 @@ class Planner {
         Motion1 start = swing_.pitch;
         if (planted && !first_ && rolls()) {
             const double length_s = kHeelRise * n_ + half_;
-            start.acceleration = heel_rise(lift_to, length_s).at(length_s - half_).acceleration;
+            // As far as it rises as it should: after a cut it may still be flat.
+            const Motion1 rises = heel_rise(lift_to, length_s).at(length_s - half_);
+            start.acceleration =
+                rises.acceleration * clamp(start.velocity / std::fmin(rises.velocity, -1e-3), 0, 1);
         }
         std::vector<Waypoint1> way;
         if (lift > 0.01) {
             way.push_back({lift, lift_to});
         }
         const double peak =
-            first_ ? 0.72 * swing_pitch_ : std::fmin(swing_pitch_, lift_to - radians(6));
-        way.push_back({lift + (first_ ? 0.36 : 0.24) * d, peak});
+            first_ ? 0.72 * swing_pitch_ : std::fmin(swing_pitch_, lift_to - radians(2));
+        way.push_back({lift + (first_ ? 0.48 : last_ ? 0.3 : 0.24) * d, peak});
         way.push_back({lift + 0.62 * d, 0.2 * peak});
         way.push_back({lift + 0.86 * d, 1.05 * strike_to});
         Key1 end{strike, {}};
@@ -366,9 +427,8 @@ class Planner {
         Motion3 to = to_path(ankle_on_print(f_, side, landing, pitch.at(strike)));
         // The foot comes down while it still brakes: it would otherwise hang far ahead of the
         // pelvis before it lands.
-        to.acceleration.z -=
-            (first_ ? 1.0 : 1) * kBrake * (to.position.z - from.position.z) / (d * d);
-        to.acceleration.y += (first_ ? 0.8 : 1) * kSetDown_m / (d * d);
+        to.acceleration.z -= kBrake * (to.position.z - from.position.z) / (d * d);
+        to.acceleration.y += (first_ ? 0.8 : last_ ? 0.45 : 1) * kSetDown_m / (d * d);
         if (planted && !first_) {
             const double hurry = kLeave + 12 * std::fmax(0, x_ / f_.leg_m - 0.75);
             from.acceleration.z += hurry * (to.position.z - from.position.z) / (d * d);
@@ -384,8 +444,11 @@ class Planner {
             minimum_jerk({lift, {from.position.x, from.velocity.x, from.acceleration.x}}, {},
                          {strike, {to.position.x, to.velocity.x, to.acceleration.x}}),
             minimum_jerk({lift, {from.position.y, from.velocity.y, from.acceleration.y}},
-                         {height_at(0.25, kClearance_m), height_at(0.5, kClearance_m),
-                          height_at(0.78, 0.8 * kClearance_m)},
+                         {height_at(whole_   ? 0.25
+                                    : first_ ? 0.38
+                                             : 0.3,
+                                    kClearance_m),
+                          height_at(0.5, kClearance_m), height_at(0.78, 0.8 * kClearance_m)},
                          {strike, {to.position.y, to.velocity.y, to.acceleration.y}}),
             minimum_jerk({lift, {from.position.z, from.velocity.z, from.acceleration.z}}, {},
                          {strike, {to.position.z, to.velocity.z, to.acceleration.z}})};
@@ -472,7 +535,14 @@ class Planner {
                 feet.legs[index_of(side)] = plan_.feet[index_of(side)].at(T);
             }
             plan_.rest_path = path_from_world_ * pelvis_over_feet(f_, feet).position_world;
+            // Where it stops short of its place the legs are aslant.
             height.to.position = plan_.rest_path.y;
+            for (const Side side : {Side::kLeft, Side::kRight}) {
+                const Vec3 ankle = path_from_world_ * feet.legs[index_of(side)].ankle_world;
+                height.to.position =
+                    std::fmin(height.to.position,
+                              hips_height(side, ankle, pelvis_at(T), turn_at(T), kStanding));
+            }
         }
         constexpr int kBands = 20;
         for (int i = 1; i <= kBands; ++i) {

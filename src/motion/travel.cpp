@@ -164,7 +164,7 @@ Curve1 plan_height(const HeightPlan& plan) {
             const double lo = plan.bands[s].lowest - base, hi = plan.bands[s].highest - base;
             if (plan.bands[s].t_s <= T) {
                 // What is wanted pulls a little everywhere, so that the curve is determined.
-                add(value[s], lerp(lo, hi, plan.bands[s].wanted) - value0[s], 0.07);
+                add(value[s], lerp(lo, hi, plan.bands[s].wanted) - value0[s], 0.2);
                 add(bend[s], -bend0[s], 4e-5 * T * T);
             }
             if (round > 0 && (now > hi || now < lo)) {

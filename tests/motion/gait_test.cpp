@@ -44,53 +44,64 @@ Chain walked(const figure::Figure& f, const Walk& w) {
 }  // namespace
 
 TEST_CASE("the walk keeps every figure of good motion, at all heights and step counts [law]") {
+    std::vector<Walk> walks;
     for (const double height : {1.5, 1.6, 1.75, 1.9}) {
         for (const int steps : {1, 2, 3, 4, 6}) {
-            Walk w;
-            w.height_m = height;
-            w.steps = steps;
-            const figure::Figure f = figure::make_mannequin(height);
-            const Chain chain = walked(f, w);
-            const Measures m = chain.measured();
-            CAPTURE(height);
-            CAPTURE(steps);
-            INFO(report(m));
-            CHECK(chain.now_s() == doctest::Approx(steps * w.n_s));
-            CHECK(m.slip_mm.value < 1);
-            CHECK(m.sink_mm.value < 2);
-            CHECK(m.hover_mm.value < 2);
-            CHECK(m.swing_sink_mm.value < 2);
-            CHECK(m.knee_stance_deg.value <= 25.1);
-            // The shortest figure's first half step, 0.6 m in 0.32 s, is at the edge: 2 % above 4
-            // m/s^2.
-            CHECK(m.pelvis_acceleration.value <= (height < 1.6 ? 4.1 : 4.0));
-            CHECK(m.pelvis_steady.value <= 2.5);
-            CHECK(m.sway_mm >= 20);
-            CHECK(m.sway_mm <= 50);
-            CHECK(m.knee.speed_rad_s.value <= 10);
-            CHECK(m.hip.speed_rad_s.value <= 6);
-            CHECK(m.ankle.speed_rad_s.value <= 8);
-            CHECK(m.spine.speed_rad_s.value <= 3);
-            for (const JointMeasures* j : {&m.knee, &m.hip, &m.ankle, &m.spine, &m.neck, &m.arm}) {
-                CHECK(j->acceleration_rad_s2.value <= 400);
-            }
-            CHECK(m.join_acceleration_ratio.value <= 1.5);
-            CHECK(m.join_position_m.value <= 1e-6);
-            CHECK(m.join_pelvis_m_s.value <= 0.05);
-            CHECK(m.join_hand_m_s.value <= 0.2);
-            CHECK(m.join_foot_m_s.value <= 0.2);
-            CHECK(m.limit_excess_deg.value <= 1e-4);
-            REQUIRE(m.steps.size() == static_cast<std::size_t>(steps + 1));
-            for (const test::Step& s : m.steps) {
-                CAPTURE(s.begin_s);
-                CHECK(s.knee_deg >= 50);
-                CHECK(s.knee_deg <= 70);
-                CHECK(s.clearance_mm >= 10);
-                CHECK(s.highest_mm <= 60);
-                if (s.begin_s > 0.4 && s.end_s < chain.now_s() - 0.4) {
-                    CHECK(s.pelvis_rise_mm >= 20);
-                    CHECK(s.pelvis_rise_mm <= 60);
-                }
+            walks.push_back({.height_m = height, .steps = steps});
+        }
+    }
+    // Quick short steps, no double support, a long one, slow: as the examples have them.
+    for (const int steps : {1, 2, 4, 6}) {
+        walks.push_back({.stroke_m = 0.5, .n_s = 16.0 / 24, .steps = std::max(steps, 2)});
+        walks.push_back({.duty = 0.5, .steps = steps});
+        walks.push_back({.duty = 0.75, .steps = steps});
+        walks.push_back({.n_s = 28.0 / 24, .steps = steps});
+    }
+    for (const Walk& w : walks) {
+        const figure::Figure f = figure::make_mannequin(w.height_m);
+        const Chain chain = walked(f, w);
+        const Measures m = chain.measured();
+        CAPTURE(w.height_m);
+        CAPTURE(w.stroke_m);
+        CAPTURE(w.n_s);
+        CAPTURE(w.duty);
+        CAPTURE(w.steps);
+        INFO(report(m));
+        CHECK(chain.now_s() == doctest::Approx(w.steps * w.n_s));
+        CHECK(m.slip_mm.value < 1);
+        CHECK(m.sink_mm.value < 2);
+        CHECK(m.hover_mm.value < 2);
+        CHECK(m.swing_sink_mm.value < 2);
+        CHECK(m.knee_stance_deg.value <= 25);
+        CHECK(m.pelvis_acceleration.value <= 4.0);
+        CHECK(m.pelvis_steady.value <= 2.5);
+        CHECK(m.sway_mm >= 20);
+        CHECK(m.sway_mm <= 50);
+        CHECK(m.knee.speed_rad_s.value <= 10);
+        CHECK(m.hip.speed_rad_s.value <= 6);
+        CHECK(m.ankle.speed_rad_s.value <= 8);
+        CHECK(m.spine.speed_rad_s.value <= 3);
+        for (const JointMeasures* j : {&m.knee, &m.hip, &m.ankle, &m.spine, &m.neck, &m.arm}) {
+            CHECK(j->acceleration_rad_s2.value <= 400);
+        }
+        CHECK(m.join_acceleration_ratio.value <= 1.5);
+        CHECK(m.join_position_m.value <= 1e-6);
+        CHECK(m.join_pelvis_m_s.value <= 0.05);
+        CHECK(m.join_hand_m_s.value <= 0.2);
+        CHECK(m.join_foot_m_s.value <= 0.2);
+        CHECK(m.limit_excess_deg.value <= 1e-4);
+        REQUIRE(m.steps.size() == static_cast<std::size_t>(w.steps + 1));
+        for (std::size_t k = 0; k < m.steps.size(); ++k) {
+            const test::Step& s = m.steps[k];
+            CAPTURE(s.begin_s);
+            CHECK(s.knee_deg >= 50);
+            CHECK(s.knee_deg <= 70);
+            CHECK(s.clearance_mm >= 10);
+            CHECK(s.highest_mm <= 60);
+            // From one whole step's middle to the next one's.
+            if (k > 0 && k + 2 < m.steps.size()) {
+                CHECK(s.pelvis_rise_mm >= 20);
+                CHECK(s.pelvis_rise_mm <= 60);
             }
         }
     }
@@ -201,7 +212,8 @@ TEST_CASE("other strokes, durations and duty factors walk without slipping [law]
         for (const Walk& w :
              {Walk{height, 0.3, 20.0 / 24, 0.62, 3}, Walk{height, 0.45, 16.0 / 24, 0.62, 3},
               Walk{height, 0.68, 24.0 / 24, 0.62, 3}, Walk{height, 0.6, 20.0 / 24, 0.55, 3},
-              Walk{height, 0.6, 24.0 / 24, 0.7, 3}, Walk{height, 0.6, 20.0 / 24, 0.5, 3},
+              Walk{height, 0.6, 24.0 / 24, 0.7, 3}, Walk{height, 0.5, 14.0 / 24, 0.62, 3},
+              Walk{height, 0.6, 20.0 / 24, 0.75, 3}, Walk{height, 0.6, 20.0 / 24, 0.5, 3},
               Walk{height, 0.0, 20.0 / 24, 0.62, 3}}) {
             const Chain chain = walked(f, w);
             const Measures m = chain.measured(240);
