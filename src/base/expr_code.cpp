@@ -304,6 +304,22 @@ bool Code::is_constant(ProgramIndex program, Value& value) const {
     return true;
 }
 
+std::vector<Slot> Code::slots(ProgramIndex program) const {
+    std::vector<Slot> list;
+    for (const Instruction* i = &instructions_[starts_[program.value]];
+         static_cast<Do>(i->op) != Do::kEnd; ++i) {
+        if (static_cast<Do>(i->op) == Do::kSlot) {
+            list.push_back({i->kind, i->index});
+        }
+    }
+    return list;
+}
+
+bool Code::is_slot(ProgramIndex program) const {
+    const Instruction* i = &instructions_[starts_[program.value]];
+    return static_cast<Do>(i[0].op) == Do::kSlot && static_cast<Do>(i[1].op) == Do::kEnd;
+}
+
 std::uint64_t Code::hash() const {
     Hash64 h;
     for (const Instruction& i : instructions_) {

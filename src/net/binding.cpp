@@ -29,6 +29,9 @@ std::int64_t Engine::time_left(const Token& token) const {
     if (token.ready_at == SimTime::never().ticks) {
         return token.ready_at;
     }
+    if (waits(token.ready_at)) {
+        return token.ready_at;
+    }
     return token.ready ? 0 : std::max<std::int64_t>(0, token.ready_at - state_.now);
 }
 
@@ -149,31 +152,35 @@ bool Engine::bind_from(const Special& s, std::size_t number, std::uint32_t copy,
         return false;
     }
     if (firing && tables_->rich[arc.rich].discipline == Discipline::kAny) {
-        return bind_any(s, number, copy);
+        return bind_any(s, number, copy, place.head, end);
     }
     for (std::uint32_t i = from; i < end; ++i) {
         const std::uint32_t slot = place.order[i];
         if ((wants_ready(arc.kind) && !place.pool[slot].ready) || chosen_before(arc, slot)) {
             continue;
         }
-        if (try_token(s, number, copy, i, firing)) {
+        const std::uint32_t alike = firing ? unordered_from(arc.rich, i) : 1;
+        if (alike > 1 ? bind_any(s, number, copy, i, i + alike)
+                      : try_token(s, number, copy, i, firing)) {
             return true;
         }
         if (faulted_) {
             return false;
         }
+        i += alike - 1;
     }
     return false;
 }
 
-// Draws one of the tokens with which the rest can be bound.
-bool Engine::bind_any(const Special& s, std::size_t number, std::uint32_t copy) {
+// Draws one of the tokens at these positions with which the rest can be bound.
+bool Engine::bind_any(const Special& s, std::size_t number, std::uint32_t copy, std::uint32_t from,
+                      std::uint32_t end) {
     const ArcTable& arc = s.arcs[number];
     const RichTokens& place = state_.rich[arc.rich];
     options_list_.clear();
     const std::size_t before = chosen_.size();
     const auto mark = static_cast<std::uint32_t>(before) + 1;
-    for (auto i = place.head; i < place.order.size(); ++i) {
+    for (std::uint32_t i = from; i < end; ++i) {
         const std::uint32_t slot = place.order[i];
         if ((wants_ready(arc.kind) && !place.pool[slot].ready) || chosen_before(arc, slot)) {
             continue;
@@ -203,10 +210,12 @@ bool Engine::bind_any(const Special& s, std::size_t number, std::uint32_t copy) 
     std::int64_t answer = 0;
     if (count > 1) {
         const std::uint32_t number_of_stream = tables_->rich[arc.rich].token_stream;
-        RandomStream stream{token_keys_[number_of_stream], state_.token_draws[number_of_stream]};
-        const auto drawn = static_cast<std::int64_t>(stream.below(count));
-        state_.token_draws[number_of_stream] = stream.count;
-        answer = drawn;
+        if (number_of_stream != kNoIndex) {  // else an order that the timekeeper leaves open
+            RandomStream stream{token_keys_[number_of_stream],
+                                state_.token_draws[number_of_stream]};
+            answer = static_cast<std::int64_t>(stream.below(count));
+            state_.token_draws[number_of_stream] = stream.count;
+        }
         if (!random_) {
             Choice choice;
             choice.kind = ChoiceKind::kToken;

@@ -76,12 +76,18 @@ bool Engine::draw_place(std::uint32_t p, std::int64_t& ticks) {
     const DurationTable& d = tables_->durations[number];
     switch (d.kind) {
         case DurationKind::kConstant:
-            ticks = d.ticks;
+            ticks = options_.timekeeper == nullptr
+                        ? d.ticks
+                        : wait(Timekeeper::Kind::kToken, p, d.ticks, d.ticks);
             return true;
         case DurationKind::kOpen:
             ticks = kOpen;
             return true;
         case DurationKind::kAuto:
+            if (options_.timekeeper != nullptr) {
+                ticks = wait(Timekeeper::Kind::kToken, p, 0, SimTime::never().ticks);
+                return true;
+            }
             if (options_.host == nullptr) {
                 fail_place(p, "action-needs-host",
                            "its duration is asked from a movement, and nobody performs movements",
@@ -115,9 +121,15 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
         }
         return false;
     };
+    const auto wait_for = [&](std::int64_t low, std::int64_t high) {
+        ticks = wait(
+            kind == ChoiceKind::kDuration ? Timekeeper::Kind::kToken : Timekeeper::Kind::kDelay,
+            element, low, high);
+        return true;
+    };
     if (d.kind == DurationKind::kConstant) {
         ticks = d.ticks;
-        return true;
+        return options_.timekeeper == nullptr || wait_for(ticks, ticks);
     }
     if (random_ && ahead != kNoIndex) {
         return draw_exponential(d.constants[0], key, count, ahead_[ahead], ticks) ||
@@ -127,7 +139,7 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
         if (!evaluate(d.a, ticks) || ticks < 0) {
             return wrong("a duration is negative or no number");
         }
-        return true;
+        return options_.timekeeper == nullptr || wait_for(ticks, ticks);
     }
     Choice choice;
     choice.kind = kind;
@@ -139,6 +151,9 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
         }
         if (high < low) {
             return wrong("the interval ends before it begins");
+        }
+        if (options_.timekeeper != nullptr) {
+            return wait_for(low, high);
         }
         RandomStream stream{key, count};
         ticks = stream.between(low, high);
@@ -170,6 +185,18 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
                 return wrong("the parameters do not fit its distribution");
             }
         }
+        if (!random_) {
+            const Support s = support(d.distribution, parameters);
+            const auto bound = [](double x) {
+                const auto t = to_ticks(x);
+                return t ? t->time : SimTime::never();
+            };
+            choice.low = {std::max<std::int64_t>(0, bound(s.low).ticks)};
+            choice.high = bound(s.high);
+            if (options_.timekeeper != nullptr) {
+                return wait_for(choice.low.ticks, choice.high.ticks);
+            }
+        }
         RandomStream stream{key, count};
         const double seconds = sample(d.distribution, parameters, stream);
         count = stream.count;
@@ -181,15 +208,6 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
             return wrong("a drawn duration goes beyond the end of time");
         }
         ticks = static_cast<std::int64_t>(std::nearbyint(exact));
-        if (!random_) {
-            const Support s = support(d.distribution, parameters);
-            const auto bound = [](double x) {
-                const auto t = to_ticks(x);
-                return t ? t->time : SimTime::never();
-            };
-            choice.low = {std::max<std::int64_t>(0, bound(s.low).ticks)};
-            choice.high = bound(s.high);
-        }
     }
     if (!random_) {
         choice.drawn = {ticks};

@@ -106,6 +106,10 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
             sibling_ticks_.resize(n.places.size());
         }
     }
+    if (options.timekeeper != nullptr) {
+        PUP_REQUIRE(!random_ && options.host == nullptr);
+        collect_unordered();
+    }
 }
 
 void Engine::start() {
@@ -127,7 +131,9 @@ void Engine::start() {
     start_marking();
     for (const ScheduledEvent& s : n.declarations.schedule) {
         Occurrence o;
-        o.at = s.at.ticks;
+        o.at = options_.timekeeper == nullptr || s.at.ticks == 0
+                   ? s.at.ticks
+                   : wait(Timekeeper::Kind::kSchedule, s.event.value, s.at.ticks, s.at.ticks);
         o.event = s.event.value;
         o.every = s.every ? s.every->ticks : 0;
         push_occurrence(o);
@@ -381,7 +387,8 @@ void Engine::give_plain(std::uint32_t t) {
 void Engine::give_timed(std::uint32_t p, std::uint32_t weight) {
     const std::uint32_t number = tables_->place[p].duration;
     const bool constant =
-        number == kNoIndex || tables_->durations[number].kind == DurationKind::kConstant;
+        number == kNoIndex || (tables_->durations[number].kind == DurationKind::kConstant &&
+                               options_.timekeeper == nullptr);
     for (std::uint32_t k = 0; k < weight; ++k) {
         std::int64_t ticks = 0;
         std::uint32_t fifo = kNoIndex;
@@ -409,7 +416,7 @@ void Engine::add_timed(std::uint32_t p, std::int64_t ticks, std::uint32_t fifo) 
     }
     Pending pending;
     pending.what = Pending::kPlain | p;
-    if (__builtin_add_overflow(state_.now, ticks, &pending.at)) {
+    if (!ends_at(ticks, pending.at)) {
         fail_place(p, "time-overflow", "a token would be ready after the end of time",
                    "shorten its duration");
         return;

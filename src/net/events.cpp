@@ -50,7 +50,14 @@ void Engine::offer_first() {
     heap_pop<2>(state_.occurrences, sooner);
     if (o.every != 0) {
         Occurrence again = o;
-        if (!__builtin_add_overflow(o.at, o.every, &again.at)) {
+        const std::int64_t ticks =
+            options_.timekeeper == nullptr
+                ? o.every
+                : wait(Timekeeper::Kind::kSchedule, o.event, o.every, o.every);
+        if (waits(ticks)) {
+            again.at = ticks;
+            heap_push<2>(state_.occurrences, again, sooner);
+        } else if (!__builtin_add_overflow(o.at, o.every, &again.at)) {
             heap_push<2>(state_.occurrences, again, sooner);  // keeps its place in the file's order
         }
     }

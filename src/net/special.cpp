@@ -172,7 +172,7 @@ std::uint32_t Engine::running_clocks(std::uint32_t delay) const {
 
 bool Engine::start_clock(std::uint32_t delay, std::int64_t ticks) {
     Clock clock;
-    if (__builtin_add_overflow(state_.now, ticks, &clock.at)) {
+    if (!ends_at(ticks, clock.at)) {
         fail_transition(tables_->delays[delay].transition, "time-overflow",
                         "its delay ends after the end of time", "shorten it");
         return false;
@@ -218,7 +218,9 @@ void Engine::set_clocks(std::uint32_t delay, std::uint32_t wanted) {
             return c.phase != Clock::kSuspended;
         });
         if (d.memory == DelayMemory::kAge) {
-            youngest->at = youngest->phase == Clock::kDue ? 0 : youngest->at - state_.now;
+            youngest->at = youngest->phase == Clock::kDue ? 0
+                           : waits(youngest->at)          ? youngest->at
+                                                          : youngest->at - state_.now;
             youngest->phase = Clock::kSuspended;
         } else {
             clocks.erase(std::next(youngest).base());

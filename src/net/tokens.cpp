@@ -11,9 +11,10 @@ namespace {
 
 constexpr std::int64_t kOpen = -1;  // as a duration
 
-// Earliest ready time, then earliest arrival, then serial.
-bool older(const Token& a, const Token& b) {
-    if (a.ready_at != b.ready_at) {
+// Earliest ready time, then earliest arrival, then serial. `kept`: by a timekeeper, so that of two
+// that wait nobody knows which will be ready first.
+bool older(const Token& a, const Token& b, bool kept) {
+    if (a.ready_at != b.ready_at && !(kept && is_wait(a.ready_at) && is_wait(b.ready_at))) {
         return a.ready_at < b.ready_at;
     }
     if (a.arrival != b.arrival) {
@@ -25,11 +26,12 @@ bool older(const Token& a, const Token& b) {
 }  // namespace
 
 bool Engine::comes_before(const RichPlaceTable& r, const Token& a, const Token& b) const {
+    const bool kept = options_.timekeeper != nullptr;
     switch (r.discipline) {
         case Discipline::kOldest:
-            return older(a, b);
+            return older(a, b, kept);
         case Discipline::kNewest:
-            return older(b, a);
+            return older(b, a, kept);
         case Discipline::kAny:
             return a.serial < b.serial;
         case Discipline::kLeast:
@@ -43,7 +45,7 @@ bool Engine::comes_before(const RichPlaceTable& r, const Token& a, const Token& 
     if (less(a.key, b.key) || less(b.key, a.key)) {
         return less(a.key, b.key) == (r.discipline == Discipline::kLeast);
     }
-    return older(a, b);
+    return older(a, b, kept);
 }
 
 void Engine::place_in_order(std::uint32_t rich, std::uint32_t slot) {
@@ -121,7 +123,7 @@ void Engine::add_token(std::uint32_t p, std::span<const Value> attributes, std::
     if (ready || ticks == 0) {
         ticks = 0;
         token.ready_at = state_.now;
-    } else if (ticks != kOpen && __builtin_add_overflow(state_.now, ticks, &token.ready_at)) {
+    } else if (ticks != kOpen && !ends_at(ticks, token.ready_at)) {
         fail_place(p, "time-overflow", "a token would be ready after the end of time",
                    "shorten its duration");
         return;
@@ -131,7 +133,8 @@ void Engine::add_token(std::uint32_t p, std::span<const Value> attributes, std::
             sibling_ticks_[p] = ticks;
         }
     }
-    if (table.keeps_order && !ready && token.ready_at != SimTime::never().ticks) {
+    if (table.keeps_order && !ready && token.ready_at != SimTime::never().ticks &&
+        !waits(token.ready_at)) {
         token.ready_at = std::max(token.ready_at, place.last_ready);
         place.last_ready = token.ready_at;
     }
@@ -208,8 +211,9 @@ void Engine::remove_token(std::uint32_t rich, std::uint32_t slot, bool now) {
         place.last_ready = 0;
         for (std::uint32_t i = place.head; i < place.order.size(); ++i) {
             const std::int64_t at = place.pool[place.order[i]].ready_at;
-            place.last_ready =
-                at != SimTime::never().ticks ? std::max(place.last_ready, at) : place.last_ready;
+            if (at != SimTime::never().ticks && !waits(at)) {
+                place.last_ready = std::max(place.last_ready, at);
+            }
         }
     }
     if (token.activity != kNoIndex) {
@@ -265,6 +269,9 @@ void Engine::give_special(const OutputTable& out, std::size_t first) {
         }
         if (out.lasts.valid()) {
             ticks = given_[first + width];
+            if (options_.timekeeper != nullptr && !is_wait(ticks)) {
+                ticks = wait(Timekeeper::Kind::kToken, out.place, ticks, ticks);
+            }
         } else {
             attributes_ = attributes.data();
             const bool fine = draw_place(out.place, ticks);
@@ -290,7 +297,7 @@ void Engine::give_special(const OutputTable& out, std::size_t first) {
             // A duration of its own may end before one that was pushed earlier: never into the
             // ring.
             const std::uint32_t number = tables_->place[out.place].duration;
-            const bool ring = !out.lasts.valid() && number != kNoIndex &&
+            const bool ring = !out.lasts.valid() && number != kNoIndex && !waits(ticks) &&
                               tables_->durations[number].kind == DurationKind::kConstant;
             add_timed(out.place, ticks, ring ? tables_->durations[number].fifo : kNoIndex);
         }
@@ -331,7 +338,8 @@ void Engine::start_marking() {
             } else {
                 const std::uint32_t number = tables_->place[p].duration;
                 add_timed(p, ticks,
-                          number == kNoIndex ? kNoIndex : tables_->durations[number].fifo);
+                          number == kNoIndex || waits(ticks) ? kNoIndex
+                                                             : tables_->durations[number].fifo);
             }
         }
     }

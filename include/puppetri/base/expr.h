@@ -177,6 +177,10 @@ class Code {
     Evaluated evaluate(ProgramIndex program, const Reader& reader) const;
     // The literal, if the whole program is one.
     bool is_constant(ProgramIndex program, Value& value) const;
+    // What the program may read, in order, each time that it is mentioned.
+    std::vector<Slot> slots(ProgramIndex program) const;
+    // The whole program is one slot.
+    bool is_slot(ProgramIndex program) const;
     std::uint64_t hash() const;
     bool operator==(const Code&) const = default;
 

@@ -17,6 +17,7 @@
 #include "puppetri/net/net.h"
 #include "puppetri/net/state.h"
 #include "puppetri/net/tables.h"
+#include "puppetri/net/timekeeper.h"
 
 namespace puppetri::net {
 
@@ -40,6 +41,8 @@ struct EngineOptions {
     // that no event sets. Not with RandomChooser.
     bool free = false;
     std::uint32_t free_events = 0;
+    // Keeps the clocks instead of the engine. Not with RandomChooser, nor with a host.
+    Timekeeper* timekeeper = nullptr;
 };
 
 class Engine final : private Code::Reader {
@@ -65,6 +68,22 @@ class Engine final : private Code::Reader {
     Outcome step(std::int64_t until = SimTime::never().ticks);
     // Fires until nothing happens up to `until`, or until so many firings in all.
     Outcome run(std::int64_t until, std::uint64_t firings);
+
+    // For those who explore: what run() would do next, in its smallest steps.
+    enum class Turn : std::uint8_t {
+        kFired,
+        kOffered,     // an occurrence is offered now
+        kOfferEnded,  // nobody (else) wants it
+        kAsked,       // free runs: the outside has done something
+        kPassed,      // time: tokens may be ready now, nothing has fired yet
+        kWaits,       // with a timekeeper: nothing happens before pass()
+        kDead,        // nothing happens any more by itself
+        kFault,
+    };
+    Turn turn();
+    // With a timekeeper: the next instant begins, in which everything that waits under one of these
+    // numbers is ready, due, or occurs. Needs an instant that has settled.
+    void pass(std::span<const std::int64_t> numbers);
 
     // An event from outside. Needs at >= now.
     void occur(EventIndex event, SimTime at);
@@ -195,7 +214,8 @@ class Engine final : private Code::Reader {
     bool bind(const Special& s, bool firing);
     bool bind_from(const Special& s, std::size_t arc, std::uint32_t copy, std::uint32_t from,
                    bool firing);
-    bool bind_any(const Special& s, std::size_t arc, std::uint32_t copy);
+    bool bind_any(const Special& s, std::size_t arc, std::uint32_t copy, std::uint32_t from,
+                  std::uint32_t end);
     bool try_token(const Special& s, std::size_t arc, std::uint32_t copy, std::uint32_t position,
                    bool firing);
     bool matches(const ArcTable& arc, std::uint32_t slot, std::uint32_t mark);
@@ -226,6 +246,24 @@ class Engine final : private Code::Reader {
                           std::int64_t& ticks);
     bool evaluate(ProgramIndex program, Value& out);
 
+    // exploring.cpp
+    // The keeper's answer as ticks: 0, or a time that is a wait.
+    std::int64_t wait(Timekeeper::Kind kind, std::uint32_t element, std::int64_t low,
+                      std::int64_t high);
+    bool waits(std::int64_t ticks) const {
+        return options_.timekeeper != nullptr && is_wait(ticks);
+    }
+    // When it is over, what lasts so many ticks from now. False: after the end of time.
+    bool ends_at(std::int64_t ticks, std::int64_t& at) const {
+        if (waits(ticks)) {
+            at = ticks;
+            return true;
+        }
+        return ticks != SimTime::never().ticks && !__builtin_add_overflow(state_.now, ticks, &at);
+    }
+    void collect_unordered();
+    std::uint32_t unordered_from(std::uint32_t rich, std::uint32_t position) const;
+
     // faults.cpp
     void fail(const char* code, std::string element, const SourceSpan& where, std::string message,
               std::string remedy);
@@ -254,6 +292,8 @@ class Engine final : private Code::Reader {
     std::vector<std::uint32_t> touch_list_;
     std::vector<std::uint32_t> outside_events_, free_sensors_;  // of free runs
     std::vector<std::uint32_t> resampled_;                      // specials with memory `resample`
+    // Per place with records: which of its waiting tokens comes first is not known (timekeeper).
+    std::vector<std::uint8_t> unordered_;
     std::vector<Value> variables_;
     std::vector<std::uint32_t>
         bound_;  // per variable: 0, or 1 + how many tokens were chosen when it was bound
