@@ -56,7 +56,7 @@ struct Stop {
 // For justice, the only one that is taken for granted: what waits for the end of a finite duration
 // does not wait for ever. A cycle of the graph with a kPass edge, in all of whose states something
 // of one kind waits and none of whose edges stirs that kind, is no run. Kinds are places, then
-// transitions (their delays), as far as their durations are bounded.
+// transitions (their delays), then events (scheduled ones).
 struct Waits {
     std::uint32_t kinds = 0;  // 0: every cycle of the graph can be gone round for ever
     // Rows of (kinds + 63) / 64 words, per state and per edge (in the order of edges.items).
