@@ -100,6 +100,8 @@ class SymbolicSpace {
     StateSet all() const;
     StateSet none() const;
     StateSet initial() const;
+    // Of one marking; empty if it is not reachable.
+    StateSet singleton(std::span<const std::uint32_t> marking) const;
     StateSet both(const StateSet& a, const StateSet& b);
     StateSet either(const StateSet& a, const StateSet& b);
     StateSet without(const StateSet& a, const StateSet& b);
@@ -169,6 +171,13 @@ class SymbolicSpace {
     std::optional<SymbolicLasso> lasso(const SymbolicAutomaton& automaton);
 
  private:
+    StateSet wrap(std::uint32_t root) const;
+    bool ready(const StateSet& a) const;
+    StateSet at_most(const LinearSum& sum, std::int64_t limit, const StateSet& within);
+    StateSet satisfying(const Predicate& predicate, std::uint32_t index, const StateSet& within);
+    StateSet before(const StateSet& a, const StateSet& within);
+    StateSet after(const StateSet& a, const StateSet& within);
+
     std::unique_ptr<SymbolicTables> tables_;
 };
 

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: MIT
+#include "saturation.h"
+
+namespace puppetri::proof {
+
+Saturation::Saturation(DiagramStore& store, SymbolicLevels& levels)
+    : store_(store),
+      levels_(levels),
+      event_count_(static_cast<std::uint32_t>(levels.events().size())),
+      first_op_(store.new_op(kKinds * event_count_ + 2)),
+      by_top_(levels.count() + 1),
+      rows_(levels.count() + 1),
+      have_row_(levels.count() + 1),
+      queues_(levels.count() + 1) {
+    for (std::uint32_t e = 0; e < event_count_; ++e) {
+        by_top_[levels.events()[e].top()].push_back(e);
+    }
+}
+
+const std::vector<Saturation::Candidate>& Saturation::row(std::uint32_t level,
+                                                          std::uint32_t value) {
+    std::vector<std::vector<Candidate>>& rows = rows_[level];
+    if (rows.size() <= value) {
+        rows.resize(value + 1);
+        have_row_[level].resize(value + 1, 0);
+    }
+    if (!have_row_[level][value]) {
+        have_row_[level][value] = 1;
+        for (const std::uint32_t e : by_top_[level]) {
+            const std::uint32_t f = levels_.events()[e].touches[0].function;
+            if (levels_.enabled(f, value)) {
+                rows[value].push_back({e, f});
+            }
+        }
+    }
+    return rows[value];
+}
+
+NodeId Saturation::reachable() {
+    NodeId node = DiagramStore::kTop;
+    const std::uint32_t outer = store_.frame();
+    for (std::uint32_t level = 1; level <= levels_.count() && !store_.failed(); ++level) {
+        const std::uint32_t base = store_.frame();
+        store_.push(0, node);
+        saturate_frame(level, base);
+        node = store_.make(level, base);
+    }
+    store_.pop_to(outer);
+    return node;
+}
+
+// The frame above base has a slot per value of the level that was found so far; closes it under the
+// events of this level. The children are closed under those of lower levels.
+void Saturation::saturate_frame(std::uint32_t level, std::uint32_t base) {
+    Queue& queue = queues_[level];
+    for (std::uint32_t v = 0; base + v < store_.frame(); ++v) {
+        if (store_.at(base + v).child != DiagramStore::kEmpty) {
+            queue.add(v);
+        }
+    }
+    while (!queue.empty() && !store_.failed()) {
+        const std::uint32_t value = queue.take();
+        store_.charge(levels_.bytes());
+        store_.tick();
+        const std::vector<Candidate>& candidates = row(level, value);
+        for (std::size_t c = 0; c < candidates.size() && !store_.failed(); ++c) {
+            const Candidate candidate = candidates[c];
+            const NodeId reached = fire(candidate.event, 1, store_.at(base + value).child);
+            if (reached == DiagramStore::kEmpty) {
+                continue;
+            }
+            const std::int32_t found = levels_.reach(candidate.function, value);
+            if (found < 0) {
+                store_.fail(Ended::kUnbounded);
+                break;
+            }
+            const auto to = static_cast<std::uint32_t>(found);
+            store_.extend_full(base, to + 1);
+            const NodeId old = store_.at(base + to).child;
+            const std::uint32_t top = store_.frame();
+            store_.push(0, reached);
+            const NodeId both = store_.unite(old, reached);
+            store_.pop_to(top);
+            if (both != old) {
+                store_.at(base + to).child = both;
+                queue.add(to);
+            }
+        }
+    }
+    queue.clear();
+}
+
+// What the event's touches from `position` on make of a closed node: closed again.
+NodeId Saturation::fire(std::uint32_t event, std::uint32_t position, NodeId node) {
+    const std::vector<SymbolicLevels::Touch>& touches = levels_.events()[event].touches;
+    if (node == DiagramStore::kEmpty || position == touches.size()) {
+        return node;
+    }
+    NodeId result = DiagramStore::kEmpty;
+    if (store_.cached(op(kFire, event), node, 0, result)) {
+        return result;
+    }
+    const std::uint32_t level = store_.level(node);
+    const std::uint32_t base = store_.frame();
+    bool any = false;
+    if (touches[position].level != level) {
+        store_.extend_full(base, levels_.value_count(level));
+        for (const DiagramEntry& e : store_.entries(node)) {
+            const NodeId below = fire(event, position, e.child);
+            store_.at(base + e.value).child = below;
+            any |= below != DiagramStore::kEmpty;
+        }
+    } else {
+        const std::uint32_t function = touches[position].function;
+        store_.extend_full(base, levels_.value_count(level));
+        for (const DiagramEntry& e : store_.entries(node)) {
+            if (levels_.next(function, e.value) == SymbolicLevels::kDisabled) {
+                continue;
+            }
+            const NodeId below = fire(event, position + 1, e.child);
+            if (below == DiagramStore::kEmpty) {
+                continue;
+            }
+            const std::int32_t found = levels_.reach(function, e.value);
+            if (found < 0) {
+                store_.fail(Ended::kUnbounded);
+                break;
+            }
+            const auto to = static_cast<std::uint32_t>(found);
+            store_.extend_full(base, to + 1);
+            store_.at(base + to).child = below;  // injective: the slot was empty
+            any = true;
+        }
+    }
+    if (any && !store_.failed()) {
+        saturate_frame(level, base);
+        result = store_.make(level, base);
+    } else {
+        store_.pop_to(base);
+    }
+    store_.remember(op(kFire, event), node, 0, result);
+    return result;
+}
+
+NodeId Saturation::step_by(std::uint32_t event, NodeId from, NodeId within, bool backward) {
+    return step_from(event, 0, from, within, backward);
+}
+
+NodeId Saturation::step(NodeId from, NodeId within, bool backward) {
+    NodeId all = DiagramStore::kEmpty;
+    for (std::uint32_t e = 0; e < event_count_ && !store_.failed(); ++e) {
+        const std::uint32_t base = store_.frame();
+        store_.push(0, all);
+        const NodeId one = step_from(e, 0, from, within, backward);
+        store_.push(0, one);
+        all = store_.unite(all, one);
+        store_.pop_to(base);
+    }
+    return all;
+}
+
+NodeId Saturation::step_from(std::uint32_t event, std::uint32_t position, NodeId node,
+                             NodeId within, bool backward) {
+    const std::vector<SymbolicLevels::Touch>& touches = levels_.events()[event].touches;
+    if (node == DiagramStore::kEmpty || within == DiagramStore::kEmpty) {
+        return DiagramStore::kEmpty;
+    }
+    if (position == touches.size()) {
+        return store_.intersect(node, within);
+    }
+    NodeId result = DiagramStore::kEmpty;
+    if (store_.cached(op(kStep + backward, event), node, within, result)) {
+        return result;
+    }
+    const std::uint32_t level = store_.level(node);
+    const std::uint32_t base = store_.frame();
+    const DiagramStore::View allowed = store_.entries(within);
+    const bool touched = touches[position].level == level;
+    if (touched) {
+        store_.extend_full(base, levels_.value_count(level));
+    }
+    for (const DiagramEntry& e : store_.entries(node)) {
+        if (touched) {
+            const std::int32_t to = target(touches[position].function, e.value, backward);
+            if (to < 0) {
+                continue;
+            }
+            const NodeId below =
+                step_from(event, position + 1, e.child,
+                          allowed.child_of(static_cast<std::uint32_t>(to)), backward);
+            store_.at(base + static_cast<std::uint32_t>(to)).child = below;
+        } else {
+            const NodeId below =
+                step_from(event, position, e.child, allowed.child_of(e.value), backward);
+            store_.push(e.value, below);
+        }
+    }
+    result = store_.make(level, base);
+    store_.remember(op(kStep + backward, event), node, within, result);
+    return result;
+}
+
+NodeId Saturation::enabled_from(std::uint32_t event, std::uint32_t position, NodeId node) {
+    const std::vector<SymbolicLevels::Touch>& touches = levels_.events()[event].touches;
+    if (node == DiagramStore::kEmpty || position == touches.size()) {
+        return node;
+    }
+    NodeId result = DiagramStore::kEmpty;
+    if (store_.cached(op(kEnabled, event), node, 0, result)) {
+        return result;
+    }
+    const std::uint32_t level = store_.level(node);
+    const std::uint32_t base = store_.frame();
+    const bool touched = touches[position].level == level;
+    for (const DiagramEntry& e : store_.entries(node)) {
+        if (!touched || levels_.enabled(touches[position].function, e.value)) {
+            const NodeId below = enabled_from(event, position + (touched ? 1 : 0), e.child);
+            store_.push(e.value, below);
+        }
+    }
+    result = store_.make(level, base);
+    store_.remember(op(kEnabled, event), node, 0, result);
+    return result;
+}
+
+NodeId Saturation::closure(NodeId from, NodeId within, bool backward) {
+    return close_node(from, within, backward);
+}
+
+// from, and all that firings among `within` make of it at this level and below.
+NodeId Saturation::close_node(NodeId node, NodeId within, bool backward) {
+    if (node == DiagramStore::kEmpty || within == DiagramStore::kEmpty ||
+        node == DiagramStore::kTop) {
+        return node;
+    }
+    NodeId result = DiagramStore::kEmpty;
+    if (store_.cached(op_close(backward), node, within, result)) {
+        return result;
+    }
+    const std::uint32_t level = store_.level(node);
+    const std::uint32_t base = store_.frame();
+    store_.extend_full(base, levels_.value_count(level));
+    const DiagramStore::View allowed = store_.entries(within);
+    for (const DiagramEntry& e : store_.entries(node)) {
+        const NodeId below = close_node(e.child, allowed.child_of(e.value), backward);
+        store_.at(base + e.value).child = below;
+    }
+    close_frame(level, base, within, backward);
+    result = store_.make(level, base);
+    store_.remember(op_close(backward), node, within, result);
+    return result;
+}
+
+void Saturation::close_frame(std::uint32_t level, std::uint32_t base, NodeId within,
+                             bool backward) {
+    Queue& queue = queues_[level];
+    for (std::uint32_t v = 0; base + v < store_.frame(); ++v) {
+        if (store_.at(base + v).child != DiagramStore::kEmpty) {
+            queue.add(v);
+        }
+    }
+    const DiagramStore::View allowed = store_.entries(within);
+    while (!queue.empty() && !store_.failed()) {
+        const std::uint32_t value = queue.take();
+        for (const std::uint32_t event : by_top_[level]) {
+            const std::int32_t to =
+                target(levels_.events()[event].touches[0].function, value, backward);
+            if (to < 0) {
+                continue;
+            }
+            const std::uint32_t position = base + static_cast<std::uint32_t>(to);
+            const NodeId room = allowed.child_of(static_cast<std::uint32_t>(to));
+            const NodeId reached =
+                fire_within(event, 1, store_.at(base + value).child, room, backward);
+            if (reached == DiagramStore::kEmpty || store_.failed()) {
+                continue;
+            }
+            const NodeId old = store_.at(position).child;
+            const std::uint32_t top = store_.frame();
+            store_.push(0, reached);
+            NodeId both = store_.unite(old, reached);
+            store_.pop_to(top);
+            if (both != old) {
+                store_.at(position).child = both;
+                queue.add(static_cast<std::uint32_t>(to));
+            }
+        }
+    }
+    queue.clear();
+}
+
+// Targets in `within` alone, closed under lower events among `within`.
+NodeId Saturation::fire_within(std::uint32_t event, std::uint32_t position, NodeId node,
+                               NodeId within, bool backward) {
+    const std::vector<SymbolicLevels::Touch>& touches = levels_.events()[event].touches;
+    if (node == DiagramStore::kEmpty || within == DiagramStore::kEmpty) {
+        return DiagramStore::kEmpty;
+    }
+    if (position == touches.size()) {
+        const std::uint32_t base = store_.frame();
+        const NodeId inside = store_.intersect(node, within);
+        store_.push(0, inside);
+        const NodeId closed = close_node(inside, within, backward);
+        store_.pop_to(base);
+        return closed;
+    }
+    NodeId result = DiagramStore::kEmpty;
+    if (store_.cached(op(kFireWithin + backward, event), node, within, result)) {
+        return result;
+    }
+    const std::uint32_t level = store_.level(node);
+    const std::uint32_t base = store_.frame();
+    store_.extend_full(base, levels_.value_count(level));
+    const DiagramStore::View allowed = store_.entries(within);
+    const bool touched = touches[position].level == level;
+    bool any = false;
+    for (const DiagramEntry& e : store_.entries(node)) {
+        const std::int32_t to = touched ? target(touches[position].function, e.value, backward)
+                                        : static_cast<std::int32_t>(e.value);
+        if (to < 0) {
+            continue;
+        }
+        const NodeId below =
+            fire_within(event, position + (touched ? 1 : 0), e.child,
+                        allowed.child_of(static_cast<std::uint32_t>(to)), backward);
+        store_.at(base + static_cast<std::uint32_t>(to)).child = below;
+        any |= below != DiagramStore::kEmpty;
+    }
+    if (any) {
+        close_frame(level, base, within, backward);
+        result = store_.make(level, base);
+    } else {
+        store_.pop_to(base);
+    }
+    store_.remember(op(kFireWithin + backward, event), node, within, result);
+    return result;
+}
+
+}  // namespace puppetri::proof
