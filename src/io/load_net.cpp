@@ -2,7 +2,9 @@
 #include "puppetri/io/load_net.h"
 
 #include "puppetri/io/disk_files.h"
+#include "puppetri/io/pipe.h"
 #include "puppetri/io/pnml.h"
+#include "puppetri/io/tina.h"
 #include "puppetri/scene/scene.h"
 
 namespace puppetri::io {
@@ -25,10 +27,12 @@ std::string ending_of(std::string_view path) {
     return out;
 }
 
-// PIPE writes <value> where PNML has <text>.
+// PIPE names its type "P/T net" and writes <value> where PNML has <text>, but in drawn labels.
 bool looks_like_pipe(std::string_view text) {
-    return text.find("<value>") != std::string_view::npos &&
-           text.find("<text>") == std::string_view::npos;
+    const std::string_view head = text.substr(0, 4096);
+    return head.find("\"P/T net\"") != std::string_view::npos ||
+           (text.find("<value>") != std::string_view::npos &&
+            text.find("<text>") == std::string_view::npos);
 }
 
 }  // namespace
@@ -52,6 +56,12 @@ Checked<NetFile> read_net(std::string_view text, const std::string& path, const 
     const std::optional<NetFormat> format = net_format_of(path, text);
     if (format == NetFormat::kPnml) {
         return read_pnml(text, path, limits);
+    }
+    if (format == NetFormat::kPipe) {
+        return read_pipe(text, path, limits);
+    }
+    if (format == NetFormat::kTina) {
+        return read_tina(text, path, limits);
     }
     return refuse("not-a-net-file", path, "the format of the file is not known",
                   "nets are read from .pnml, .xml, .net and .pup");

@@ -3,6 +3,7 @@
 
 #include "defects.h"
 #include "pnml_document.h"
+#include "test_arcs.h"
 
 namespace puppetri::io {
 namespace {
@@ -41,7 +42,7 @@ void build_plain(const PnmlDocument& document, NetFile& out, Defects& defects) {
             }
             index[n] = static_cast<std::uint32_t>(out.draft.places.size());
             out.draft.places.push_back(std::move(place));
-            out.look.places.push_back(look_of(node.xml, node.page, "initialMarking"));
+            out.look.places.push_back(look_of(node.xml, node.page, node.order, "initialMarking"));
         } else if (node.kind == PnmlNode::kTransition) {
             net::TransitionDraft transition;
             transition.path = node.id;
@@ -49,7 +50,7 @@ void build_plain(const PnmlDocument& document, NetFile& out, Defects& defects) {
             transition.where = document.text.where(node.xml);
             index[n] = static_cast<std::uint32_t>(out.draft.transitions.size());
             out.draft.transitions.push_back(std::move(transition));
-            out.look.transitions.push_back(look_of(node.xml, node.page, ""));
+            out.look.transitions.push_back(look_of(node.xml, node.page, node.order, ""));
         }
     }
     for (std::uint32_t n = 0; n < document.nodes.size(); ++n) {
@@ -72,7 +73,7 @@ void build_plain(const PnmlDocument& document, NetFile& out, Defects& defects) {
                      .id = arc.id,
                      .source = arc.source,
                      .target = arc.target,
-                     .look = look_of(arc.xml, arc.page, "inscription")};
+                     .look = look_of(arc.xml, arc.page, arc.order, "inscription")};
         if (arc.is_output) {
             look.number = static_cast<std::uint32_t>(transition.outputs.size());
             transition.outputs.push_back(
@@ -86,6 +87,7 @@ void build_plain(const PnmlDocument& document, NetFile& out, Defects& defects) {
         }
         out.look.arcs.push_back(std::move(look));
     }
+    join_parallel_tests(out, defects);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ class Collector {
         }
         const std::string_view type = out_.net.attribute("type").value();
         const std::string_view last = type.substr(type.find_last_of("/#") + 1);
-        if (type.empty() || contains(kPlainTypes, last) || type == "P/T net") {
+        if (type.empty() || contains(kPlainTypes, last)) {
             out_.type = PnmlType::kPlain;
         } else if (contains(kColouredTypes, last)) {
             out_.type = PnmlType::kColoured;
@@ -132,6 +132,7 @@ class Collector {
                 out_.pages.push_back({.id = std::string(id_of(node)),
                                       .name = label ? label_text(label) : "",
                                       .parent = page,
+                                      .order = order_++,
                                       .extra = extra_of(node)});
                 open.push_back(
                     {node.first_child(), static_cast<std::uint32_t>(out_.pages.size()) - 1});
@@ -205,6 +206,7 @@ class Collector {
         node.xml = xml;
         node.id = id_of(xml);
         node.page = page;
+        node.order = order_++;
         const std::string element = element_of(node);
         const bool coloured = out_.type == PnmlType::kColoured;
         if (node.is_reference()) {
@@ -244,6 +246,7 @@ class Collector {
         arc.source = xml.attribute("source").value();
         arc.target = xml.attribute("target").value();
         arc.page = page;
+        arc.order = order_++;
         if (out_.type == PnmlType::kColoured) {
             check_inside(xml, "arc " + arc.id,
                          {"name", "graphics", "type", "arctype", "hlinscription"},
@@ -437,6 +440,7 @@ class Collector {
     const NetLimits& limits_;
     Defects& defects_;
     Table table_;
+    std::uint32_t order_ = 0;
 };
 
 std::optional<DrawingPoint> point_of(pugi::xml_node graphics) {
@@ -498,9 +502,11 @@ std::int64_t label_count(const PnmlDocument& document, pugi::xml_node label, std
     return number.value;
 }
 
-ElementLook look_of(pugi::xml_node xml, std::uint32_t page, std::string_view value_label) {
+ElementLook look_of(pugi::xml_node xml, std::uint32_t page, std::uint32_t order,
+                    std::string_view value_label) {
     ElementLook look;
     look.page = page;
+    look.order = order;
     for (const pugi::xml_node c : xml.children()) {
         const std::string_view name = local_name(c);
         if (name == "graphics") {
@@ -532,7 +538,7 @@ void fill_look(const PnmlDocument& document, NetLook& look) {
                                        .id = node.id,
                                        .to = node.xml.attribute("ref").value(),
                                        .name = node.name,
-                                       .look = look_of(node.xml, node.page, "")});
+                                       .look = look_of(node.xml, node.page, node.order, "")});
         }
     }
 }

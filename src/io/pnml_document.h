@@ -22,7 +22,7 @@ struct PnmlNode {
     Kind kind = kPlace;
     pugi::xml_node xml;
     std::string id, name;
-    std::uint32_t page = 0;
+    std::uint32_t page = 0, order = 0;
     std::uint32_t stands_for = 0;  // the node itself, or what a reference leads to
     bool is_place() const { return kind == kPlace || kind == kReferencePlace; }
     bool is_reference() const { return kind == kReferencePlace || kind == kReferenceTransition; }
@@ -34,7 +34,7 @@ struct PnmlArc {
     std::uint32_t place = 0, transition = 0;  // nodes, references followed
     bool is_output = false;
     PnmlArcType type = PnmlArcType::kNormal;
-    std::uint32_t page = 0;
+    std::uint32_t page = 0, order = 0;
 };
 
 struct PnmlDocument {
@@ -58,7 +58,8 @@ std::string label_text(pugi::xml_node label);
 std::int64_t label_count(const PnmlDocument& document, pugi::xml_node label, std::int64_t least,
                          std::int64_t otherwise, const std::string& element, Defects& defects);
 // The drawing of a node or arc whose value label (initial marking, inscription) has that name.
-ElementLook look_of(pugi::xml_node xml, std::uint32_t page, std::string_view value_label);
+ElementLook look_of(pugi::xml_node xml, std::uint32_t page, std::uint32_t order,
+                    std::string_view value_label);
 // Fills pages, references, id and toolspecific elements.
 void fill_look(const PnmlDocument& document, NetLook& look);
 

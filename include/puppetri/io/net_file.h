@@ -59,6 +59,7 @@ struct DrawingPoint {
 // What the drawing and other tools know of one element. The XML texts are kept as they were.
 struct ElementLook {
     std::uint32_t page = 0;          // in NetLook::pages
+    std::uint32_t order = 0;         // among all elements and pages of the file
     std::optional<DrawingPoint> at;  // of the element's middle
     std::string graphics;            // the PNML element <graphics>
     std::string name_graphics;       // the same of the name's label
@@ -79,7 +80,8 @@ struct ArcLook {
 struct PageLook {
     std::string id, name;
     std::uint32_t parent = 0;  // an earlier page
-    std::string extra;         // graphics and toolspecific elements
+    std::uint32_t order = 0;
+    std::string extra;  // graphics and toolspecific elements
 };
 
 // A reference place or transition.

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// TINA's .net: each construct of its manual page, and what the intervals mean.
+#include "puppetri/io/tina.h"
+
+#include <doctest/doctest.h>
+
+#include "puppetri/net/net.h"
+
+using namespace puppetri;
+using namespace puppetri::io;
+
+namespace {
+
+NetFile read(const std::string& text) {
+    const Checked<NetFile> file = read_tina(text, "n.net");
+    if (!file) {
+        FAIL(file.error()[0].code << ": " << file.error()[0].message);
+    }
+    return *file;
+}
+
+std::string code_of(const std::string& text) {
+    const Checked<NetFile> file = read_tina(text, "n.net");
+    return file ? "fine" : file.error()[0].code;
+}
+
+const net::TransitionDraft& transition(const NetFile& file, const std::string& path) {
+    return file.draft.transitions.at(file.ids.find_transitions(path)->at(0).value);
+}
+
+std::string place_of(const NetFile& file, net::PlaceIndex p) {
+    return file.draft.places.at(p.value).path;
+}
+
+constexpr std::int64_t kSecond = kTicksPerSecond;
+
+}  // namespace
+
+TEST_CASE("declarations superpose, in any order [unit]") {
+    const NetFile file = read(
+        "# a comment\n"
+        "net {my net}\n"
+        "tr t1 : go [1,2] p1*2 {a \\} b} -> p2 p3*4\n"
+        "pl p1 : start (3K)\n"
+        "pl {a \\} b} (1)\n"
+        "pl p4 t1*5 -> t2?2 t3?-3\n"
+        "tr t2 p1?1 p2?-7 -> \n"
+        "tr t1 p4 -> \n"
+        "tr t3 [0,w[ -> p1\n"
+        "nt n1 0 {a note}\n"
+        "lb p2 named\n");
+    CHECK(file.draft.name == "my net");
+    const net::TransitionDraft& t1 = transition(file, "t1");
+    CHECK(t1.caption == "go");
+    REQUIRE(t1.inputs.size() == 3);
+    CHECK(place_of(file, t1.inputs[0].place) == "p1");
+    CHECK(t1.inputs[0].weight == 2);
+    CHECK(place_of(file, t1.inputs[1].place) == "a } b");
+    CHECK(place_of(file, t1.inputs[2].place) == "p4");
+    REQUIRE(t1.outputs.size() == 3);
+    CHECK(t1.outputs[1].weight == 4);
+    CHECK(place_of(file, t1.outputs[2].place) == "p4");
+    CHECK(t1.outputs[2].weight == 5);
+    const net::TransitionDraft& t2 = transition(file, "t2");
+    REQUIRE(t2.inputs.size() == 3);
+    CHECK(t2.inputs[0].kind == net::ArcKind::kRead);
+    CHECK(t2.inputs[0].weight == 2);
+    CHECK(t2.inputs[1].kind == net::ArcKind::kRead);
+    CHECK(t2.inputs[2].kind == net::ArcKind::kUnless);
+    CHECK(t2.inputs[2].weight == 7);
+    const net::TransitionDraft& t3 = transition(file, "t3");
+    CHECK(t3.inputs.at(0).kind == net::ArcKind::kUnless);
+    CHECK(t3.inputs.at(0).weight == 3);
+    CHECK(file.draft.places.at(file.ids.find_places("p1")->at(0).value).tokens.at(0).count == 3000);
+    CHECK(file.draft.places.at(file.ids.find_places("p2")->at(0).value).caption == "named");
+    CHECK(net::compile(file.draft).has_value());
+}
+
+TEST_CASE("intervals become delays [unit]") {
+    const NetFile file = read(
+        "tr exact [2,2] p -> p\n"
+        "tr closed [1,3] p -> p\n"
+        "tr open ]1,3[ p -> p\n"
+        "tr late [4,w[ p -> p\n"
+        "tr any p -> p\n"
+        "tr now [0,0] p -> p\n");
+    const auto& exact = transition(file, "exact").delay->duration;
+    CHECK(exact.kind == net::DurationKind::kConstant);
+    CHECK(exact.a.literal_value() == 2 * kSecond);
+    const auto& closed = transition(file, "closed").delay->duration;
+    CHECK(closed.kind == net::DurationKind::kInterval);
+    CHECK(closed.a.literal_value() == kSecond);
+    CHECK(closed.b.literal_value() == 3 * kSecond);
+    const auto& open = transition(file, "open").delay->duration;
+    CHECK(open.a.literal_value() == kSecond + 1);
+    CHECK(open.b.literal_value() == 3 * kSecond - 1);
+    SimTime low;
+    CHECK(is_at_least(transition(file, "late").delay->duration, low));
+    CHECK(low.ticks == 4 * kSecond);
+    CHECK(is_at_least(transition(file, "any").delay->duration, low));
+    CHECK(low.ticks == 0);
+    CHECK(!transition(file, "now").delay);
+    const Checked<net::Net> net = net::compile(file.draft);
+    REQUIRE(net.has_value());
+    CHECK(!net->paced());
+    // Every value from the bound on, and none below it.
+    const std::vector<double> p = {4, 1, 4, std::numeric_limits<double>::infinity()};
+    REQUIRE(check(DistributionKind::kNormal, p).has_value());
+    CHECK(support(DistributionKind::kNormal, p).low == 4);
+    CHECK(support(DistributionKind::kNormal, p).high > 1e300);
+}
+
+TEST_CASE("a file without intervals has no time, and its unit may be told [unit]") {
+    CHECK(net::compile(read("tr t [0,w[ p -> q\ntr u q -> p\ntr source -> p\n").draft)->paced());
+    const NetFile file = read("# unit 250 ms\ntr t [2,2] p -> q\n");
+    CHECK(transition(file, "t").delay->duration.a.literal_value() == kSecond / 2);
+}
+
+TEST_CASE("priorities that are levels become levels [unit]") {
+    const NetFile file = read(
+        "tr a p -> q\ntr b p -> q\ntr c p -> q\ntr d p -> q\n"
+        "pr a > b c\npr d < c b\n");
+    CHECK(transition(file, "a").priority == 3);
+    CHECK(transition(file, "b").priority == 2);
+    CHECK(transition(file, "c").priority == 2);
+    CHECK(transition(file, "d").priority == 1);
+}
+
+TEST_CASE("priorities that are no levels forbid while the higher one is enabled [unit]") {
+    const NetFile file = read(
+        "tr high p*2 -> \ntr two p q ->\ntr low r ->\ntr beside s ->\n"
+        "pr high > low\npr two > low\n");
+    const net::TransitionDraft& low = transition(file, "low");
+    CHECK(low.priority == 1);
+    REQUIRE(low.inputs.size() == 2);
+    CHECK(low.inputs[1].kind == net::ArcKind::kUnless);
+    CHECK(place_of(file, low.inputs[1].place) == "p");
+    CHECK(low.inputs[1].weight == 2);
+    CHECK(low.guard.has_value());
+    CHECK(!transition(file, "beside").guard);
+    CHECK(net::compile(file.draft).has_value());
+    CHECK(code_of("tr a [1,1] p ->\ntr b p ->\ntr c p ->\npr a > b\n") == "priorities-not-levels");
+    CHECK(code_of("tr a p ->\ntr b p ->\npr a > b\npr b > a\n") == "priorities-in-a-circle");
+}
+
+TEST_CASE("what is not understood is refused, with its line [unit]") {
+    CHECK(code_of("tr t p!2 -> q\n") == "unknown-arc-type");
+    CHECK(code_of("tr t p -> q?1\n") == "arc-type-backwards");
+    CHECK(code_of("tr t p*0 -> q\n") == "number-too-small");
+    CHECK(code_of("tr t p*9E -> q\n") == "number-too-large");
+    CHECK(code_of("tr t p*x -> q\n") == "not-a-number");
+    CHECK(code_of("tr t p q\n") == "unknown-element");
+    CHECK(code_of("tr t [3,2] p -> q\n") == "bad-interval");
+    CHECK(code_of("tr t ]2,2] p -> q\n") == "bad-interval");
+    CHECK(code_of("tr t [1,1] p ->\ntr t [2,2] q ->\n") == "bad-interval");
+    CHECK(code_of("tr t [1,99999999999999999] p ->\n") == "number-too-large");
+    CHECK(code_of("pl p (1)\npl p (2)\n") == "duplicate-label");
+    CHECK(code_of("tr x -> x\n") == "duplicate-id");
+    CHECK(code_of("pl {p (1)\n") == "unclosed-name");
+    CHECK(code_of("lb nobody x\n") == "unknown-id");
+    CHECK(code_of("sc x\n") == "unknown-element");
+    CHECK(code_of("pr a\n") == "unknown-element");
+    const Checked<NetFile> bad = read_tina("tr t p -> q\n\ntr u p!1 -> q\npl p (x)\n", "n.net");
+    REQUIRE(!bad.has_value());
+    CHECK(bad.error().size() == 2);
+    CHECK(bad.error()[0].where.line == 3);
+    CHECK(bad.error()[1].where.line == 4);
+}
+
+TEST_CASE("parallel tests: the strictest counts [unit]") {
+    const NetFile file = read("tr t p?2 p?5 q?-3 q?-1 r -> p\n");
+    const net::TransitionDraft& t = transition(file, "t");
+    REQUIRE(t.inputs.size() == 3);
+    CHECK(t.inputs[0].weight == 5);
+    CHECK(t.inputs[1].weight == 1);
+    CHECK(t.inputs[2].kind == net::ArcKind::kTake);
+    CHECK(file.notes.size() == 1);
+}
