@@ -17,7 +17,7 @@ class LinearProgram {
         kFeasible,
         kInfeasible,
         kUnbounded,  // of maximize
-        kGaveUp,     // a number passed 127 bits, or the pivots allowed are used up
+        kGaveUp,     // a number passed 63 bits, or the pivots allowed are used up
     };
     struct Term {
         std::uint32_t variable = 0;
@@ -27,7 +27,7 @@ class LinearProgram {
     struct Reason {
         std::uint32_t variable = 0;
         bool upper = false;
-        std::int64_t factor = 1;  // 0: did not fit in 63 bits
+        std::int64_t factor = 1;
     };
 
     LinearProgram();
@@ -55,7 +55,6 @@ class LinearProgram {
     // After kFeasible: the value found is numerator / denominator (above 0).
     struct Value {
         std::int64_t numerator = 0, denominator = 1;
-        bool fits = true;
     };
     Value value(std::uint32_t variable) const;
 

@@ -41,7 +41,7 @@ struct StateEquationAnswer {
     enum Kind : std::uint8_t {
         kImpossible,  // the predicate holds in no reachable marking
         kCandidate,   // marking and firings satisfy everything that was looked at
-        kUnknown,     // the budget ended, or numbers passed 127 bits
+        kUnknown,     // the budget ended, or numbers passed 63 bits
     };
     Kind kind = kUnknown;
     std::vector<Invariant> used;  // of kImpossible: together they exclude all cases; no doubles
