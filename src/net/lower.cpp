@@ -9,7 +9,7 @@
 
 #include "check.h"
 #include "puppetri/net/net.h"
-#include "visit.h"
+#include "puppetri/net/visit.h"
 
 namespace puppetri::net {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The general simplex of Dutertre and de Moura (A fast linear-arithmetic solver for DPLL(T), CAV
-// 2006, LNCS 4144): rows  sum a_j x_j = 0  with one basic variable each; variables outside the basis
-// are always within their bounds; basic ones are brought within theirs one by one. What we changed:
-// rows are integers without a common divisor, not rationals with a unit for the basic variable, so
-// that most arithmetic is one multiplication of 64-bit numbers and none ever needs a denominator;
-// and the leaving variable is the one that is farthest off, until that has taken long, then the
-// least (Bland's rule, which ends).
+// 2006, LNCS 4144): rows  sum a_j x_j = 0  with one basic variable each; variables outside the
+// basis are always within their bounds; basic ones are brought within theirs one by one. What we
+// changed: rows are integers without a common divisor, not rationals with a unit for the basic
+// variable, so that most arithmetic is one multiplication of 64-bit numbers and none ever needs a
+// denominator; and the leaving variable is the one that is farthest off, until that has taken long,
+// then the least (Bland's rule, which ends).
 #include "puppetri/proof/linear_program.h"
 
 #include <algorithm>
@@ -107,9 +107,9 @@ struct LinearProgram::Tableau {
     }
 
     static std::int64_t factor_in(const Row& row, std::uint32_t variable) {
-        const auto it = std::lower_bound(
-            row.entries.begin(), row.entries.end(), variable,
-            [](const Entry& e, std::uint32_t v) { return e.variable < v; });
+        const auto it =
+            std::lower_bound(row.entries.begin(), row.entries.end(), variable,
+                             [](const Entry& e, std::uint32_t v) { return e.variable < v; });
         return it != row.entries.end() && it->variable == variable ? it->factor : 0;
     }
 
@@ -430,12 +430,12 @@ struct LinearProgram::Tableau {
         }
     }
 
-    void bound(std::uint32_t variable, bool upper, std::int64_t limit) {
+    void bound(std::uint32_t variable, bool upper, std::int64_t limit, bool always = false) {
         std::int64_t& now = upper ? high[variable] : low[variable];
         if (upper ? limit >= now : limit <= now) {
             return;
         }
-        if (!levels.empty()) {
+        if (!levels.empty() && !always) {
             trail.push_back({variable, upper, now});
         }
         now = limit;
@@ -515,6 +515,9 @@ void LinearProgram::at_least(std::uint32_t variable, std::int64_t limit) {
 void LinearProgram::at_most(std::uint32_t variable, std::int64_t limit) {
     tableau_->bound(variable, true, limit);
 }
+void LinearProgram::at_least_always(std::uint32_t variable, std::int64_t limit) {
+    tableau_->bound(variable, false, limit, true);
+}
 
 void LinearProgram::push() {
     tableau_->levels.push_back(static_cast<std::uint32_t>(tableau_->trail.size()));
@@ -531,6 +534,7 @@ void LinearProgram::pop() {
 }
 
 LinearProgram::Answer LinearProgram::solve(std::uint64_t pivots) { return tableau_->solve(pivots); }
+bool LinearProgram::overflowed() const { return tableau_->broken; }
 const std::vector<LinearProgram::Reason>& LinearProgram::reasons() const {
     return tableau_->reasons;
 }

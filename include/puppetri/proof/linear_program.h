@@ -43,6 +43,8 @@ class LinearProgram {
     // Tightens a bound; a weaker one than there is changes nothing.
     void at_least(std::uint32_t variable, std::int64_t limit);
     void at_most(std::uint32_t variable, std::int64_t limit);
+    // A bound that no pop forgets.
+    void at_least_always(std::uint32_t variable, std::int64_t limit);
     // Bounds since the last push are forgotten by pop.
     void push();
     void pop();
@@ -50,6 +52,8 @@ class LinearProgram {
     // Are there rationals within all bounds?
     // Cost    `pivots` at most, each about the number of entries of the tableau.
     Answer solve(std::uint64_t pivots);
+    // A number did not fit: every answer from now on is kGaveUp.
+    bool overflowed() const;
     // After kInfeasible: bounds that exclude each other, with the factors that show it.
     const std::vector<Reason>& reasons() const;
     // After kFeasible: the value found is numerator / denominator (above 0).

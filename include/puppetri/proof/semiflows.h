@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "puppetri/proof/budget.h"
@@ -51,6 +52,9 @@ Flows transition_semiflows(const PlainNet& net, const Budget& budget);
 Flows place_flow_basis(const PlainNet& net, const Budget& budget,
                        std::span<const std::uint8_t> emptied = {});
 
+// Per place: some arc of the net takes all its tokens (`all P`).
+std::vector<std::uint8_t> emptied_places(const net::Net& net);
+
 // y m. Nothing on overflow.
 std::optional<std::int64_t> weighted_tokens(const Flow& flow,
                                             std::span<const std::uint32_t> marking);
@@ -65,6 +69,6 @@ std::vector<Flow> effects(const PlainNet& net);
 
 // "2*ana.has + rui.has = 1": a flow and its constant with the places' names.
 std::string invariant_text(const Flow& flow, std::int64_t constant,
-                           std::span<const std::string> place_names);
+                           std::span<const std::string_view> place_names);
 
 }  // namespace puppetri::proof

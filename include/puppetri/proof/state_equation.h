@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "puppetri/proof/budget.h"
@@ -17,17 +18,18 @@
 
 namespace puppetri::proof {
 
-// What has been used to exclude a case: in every reachable marking sum >= limit (the sum has
-// factors of both signs). An initially marked trap, or a combination y with y C >= 0.
+// A linear relation of token counts that holds in every reachable marking: an initially marked trap
+// (at least 1), or a combination y of places with y C <= 0 (y m <= y m0).
 struct Invariant {
+    enum Kind : std::uint8_t { kEqual, kAtMost, kAtLeast };
     LinearSum sum;
+    Kind kind = kAtMost;
     std::int64_t limit = 0;
-    bool constant = false;  // the sum never changes: sum == limit
     bool trap = false;
+    bool operator==(const Invariant&) const = default;
 };
-// "a.has + b.has = 1" or "P1 + P7 >= 1 (a trap)"; of y C >= 0 with only negative factors the
-// inequality is turned round: "a + b <= 1".
-std::string text(const Invariant& invariant, std::span<const std::string> place_names);
+// "ana.has + rui.has = 1", "P1 + P7 >= 1 (trap)".
+std::string text(const Invariant& invariant, std::span<const std::string_view> place_names);
 
 struct StateEquationOptions {
     bool traps = true;             // Esparza and Melzer 2000
@@ -44,8 +46,12 @@ struct StateEquationAnswer {
         kUnknown,     // the budget ended, or numbers passed 63 bits
     };
     Kind kind = kUnknown;
-    std::vector<Invariant> used;  // of kImpossible: together they exclude all cases; no doubles
-    Marking marking;              // of kCandidate
+    // Of kImpossible: together (and with upper bounds of single
+    // places, where disjunctions are split) they exclude all cases, no doubles; unless the cases
+    // also split how often a transition fires, which no invariant tells.
+    std::vector<Invariant> used;
+    bool split_firings = false;
+    Marking marking;                     // of kCandidate
     std::vector<std::uint64_t> firings;  // of kCandidate: how often each transition
     std::uint64_t programs = 0;          // linear programs solved
 };
@@ -59,8 +65,9 @@ StateEquationAnswer solve_state_equation(const PlainNet& net, const Predicate& p
                                          const Budget& budget,
                                          const StateEquationOptions& options = {});
 
-// The predicate can never hold, and why; nothing if that is not proved. What rules call: tries
-// single semiflows first (the shortest explanation), then the state equation with traps.
+// The predicate can never hold, and why; nothing if that is not proved. What rules call: the state
+// equation with traps, without splitting firings, on the part of the net that the predicate reads.
+// The dual solutions of the linear programs are the invariants: none has to be listed beforehand.
 // never A: A; mutex: two of them; exactly_one: not exactly one; bounded k: a place above k.
 std::optional<std::vector<Invariant>> prove_by_invariants(
     const PlainNet& net, const Predicate& must_never_hold, const Budget& budget,
