@@ -592,7 +592,8 @@ StateEquationAnswer solve_state_equation(const PlainNet& net, const Predicate& p
     for (Invariant& i : answer.used) {
         i.sum = part.outward(std::move(i.sum));
     }
-    if (!answer.marking.empty()) {
+    if (answer.kind == StateEquationAnswer::kCandidate &&
+        answer.marking.size() == part.sub.places.size()) {
         Marking marking = net.initial;
         std::vector<std::uint64_t> firings(net.transition_count(), 0);
         for (std::uint32_t p = 0; p < part.sub.places.size(); ++p) {

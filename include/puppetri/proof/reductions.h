@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A smaller net that answers the same question. Each rule stands with its preconditions and its
-// source in src/proof/reduction_rules.cpp; a sequence of the reduced net is told as a sequence of
-// the original one.
+// A smaller net that answers the same question. Each rule stands with its preconditions, its reason
+// and its source in src/proof/reduction_rules.cpp; a sequence of the reduced net is told as a
+// sequence of the original one.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -34,16 +34,19 @@ struct Reduction {
     static constexpr std::uint32_t kGone = ~std::uint32_t{0};
     PlainNet net;
     std::vector<std::uint32_t> place_of;  // reduced place -> original place
-    std::vector<std::uint32_t> now;       // original place -> reduced place, or kGone
-    // Kept places may be constant, and then gone too: their tokens for ever are those of the
-    // original initial marking.
-    net::Rows<std::uint32_t> sequences;  // reduced transition -> original transitions in order
-    // What has to be fired first: the reduced initial marking is reached by it.
+    std::vector<std::uint32_t> now;       // original place -> reduced place, or kGone; kept: never
+    net::Rows<std::uint32_t> sequences;   // reduced transition -> original transitions in order
+    // What has to be fired first: it leads to the reduced initial marking.
     std::vector<std::uint32_t> prefix;
+    // kDeadlock, kStutter: what may still fire, unseen, where the reduced net is dead; to be fired
+    // in this order, each as often as it goes.
+    std::vector<std::vector<std::uint32_t>> rest;
     std::uint32_t rules_applied = 0;
 
-    // A firing sequence of the reduced net as one of the original net.
-    std::vector<std::uint32_t> original(std::span<const std::uint32_t> reduced) const;
+    // A firing sequence of the reduced net as one of the original net, from its initial marking.
+    // A dead end of the reduced net becomes a dead end (`dead`: fires the rest too).
+    std::vector<std::uint32_t> original(const PlainNet& whole,
+                                        std::span<const std::uint32_t> reduced, bool dead) const;
 };
 
 // Applies all rules that preserve the goal until none applies or the budget ends (what is reduced
