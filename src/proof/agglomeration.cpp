@@ -5,21 +5,19 @@
 //
 // After (post-agglomeration): the consumers need p alone, so that f can fire as soon as h has, and
 // nothing can prevent it. In any run each f can be moved to just after its h: f adds its tokens
-// earlier, which hinders nobody, as no place to which F adds inhibits. f is unseen, so the run looks
-// the same. Where a run leaves tokens in p, some f may be added, or p would not be empty in a dead
-// marking.
-// Sources: Berthelot 1987; Haddad, Pradat-Peyre: New efficient Petri nets reductions for parallel
-// programs verification, PPL 16, 2006; Thierry-Mieg 2020, rules of post-agglomeration.
+// earlier, which hinders nobody, as no place to which F adds inhibits. f is unseen, so the run
+// looks the same. Where a run leaves tokens in p, some f may be added, or p would not be empty in a
+// dead marking. Sources: Berthelot 1987; Haddad, Pradat-Peyre: New efficient Petri nets reductions
+// for parallel programs verification, PPL 16, 2006; Thierry-Mieg 2020, rules of post-agglomeration.
 //
-// Before (pre-agglomeration): the producers add to p alone, so that h can wait until just before its
-// f; its tokens stay where they were meanwhile, which hinders nobody, as no place from which H takes
-// inhibits; and whoever else takes from these places did so while h's tokens were gone. h is unseen
-// and reads nothing. h whose f never comes are left out: that changes nothing that is seen. For
-// death and for endless runs the marking without these h must be dead if it was: so only H takes
-// from these places, and nobody else looks at them. A dead marking of the reduced net becomes one of
-// the original after firing what h are left (`rest`).
-// Sources: the same; for reachability the weaker conditions are those of "free agglomeration",
-// Thierry-Mieg 2020.
+// Before (pre-agglomeration): the producers add to p alone, so that h can wait until just before
+// its f; its tokens stay where they were meanwhile, which hinders nobody, as no place from which H
+// takes inhibits; and whoever else takes from these places did so while h's tokens were gone. h is
+// unseen and reads nothing. h whose f never comes are left out: that changes nothing that is seen.
+// For death and for endless runs the marking without these h must be dead if it was: so only H
+// takes from these places, and nobody else looks at them. A dead marking of the reduced net becomes
+// one of the original after firing what h are left (`rest`). Sources: the same; for reachability
+// the weaker conditions are those of "free agglomeration", Thierry-Mieg 2020.
 #include <algorithm>
 
 #include "reduction_net.h"
@@ -181,8 +179,7 @@ bool try_after(ReductionNet& net, std::uint32_t p) {
     std::vector<std::uint32_t> times;
     for (const std::uint32_t h : around.producers) {
         const std::int64_t given = net.arc(h, p).change;
-        if (given % weight != 0 || given / weight > kMostRepeats ||
-            (given != weight && !single)) {
+        if (given % weight != 0 || given / weight > kMostRepeats || (given != weight && !single)) {
             return false;
         }
         times.push_back(static_cast<std::uint32_t>(given / weight));
@@ -191,11 +188,10 @@ bool try_after(ReductionNet& net, std::uint32_t p) {
     const std::uint32_t f = around.consumers.front();
     const std::uint32_t first = net.initial[p] / static_cast<std::uint32_t>(weight);
     const ReductionTransition consumer = net.transitions[f];
-    if (first > 0 && std::any_of(consumer.arcs.begin(), consumer.arcs.end(),
-                                 [&](const ReductionArc& a) {
-                                     return a.change > 0 &&
-                                            net.initial[a.place] + a.change * first > (1 << 30);
-                                 })) {
+    if (first > 0 &&
+        std::any_of(consumer.arcs.begin(), consumer.arcs.end(), [&](const ReductionArc& a) {
+            return a.change > 0 && net.initial[a.place] + a.change * first > (1 << 30);
+        })) {
         return false;
     }
     if (!fuse(net, p, around, times)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A net while it is reduced: per transition one list of arcs, in which what a transition needs, what
-// it changes and what inhibits it stand side by side. A place that is taken and given back is a
-// need without a change, so equal behaviour looks equal.
+// A net while it is reduced: per transition one list of arcs, in which what a transition needs,
+// what it changes and what inhibits it stand side by side. A place that is taken and given back is
+// a need without a change, so equal behaviour looks equal.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,9 +13,9 @@ namespace puppetri::proof {
 struct ReductionArc {
     static constexpr std::uint32_t kNoLimit = ~std::uint32_t{0};
     std::uint32_t place = 0;
-    std::uint32_t need = 0;            // at least so many tokens
-    std::int64_t change = 0;           // need + change >= 0
-    std::uint32_t limit = kNoLimit;    // fewer tokens than this
+    std::uint32_t need = 0;          // at least so many tokens
+    std::int64_t change = 0;         // need + change >= 0
+    std::uint32_t limit = kNoLimit;  // fewer tokens than this
     bool tests() const { return need > 0 || limit != kNoLimit; }
     bool empty() const { return !tests() && change == 0; }
     bool operator==(const ReductionArc&) const = default;

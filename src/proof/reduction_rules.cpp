@@ -63,8 +63,8 @@ bool remove_never_enabled(ReductionNet& net) {
     return any;
 }
 
-// A place from which nobody takes has at least its initial tokens for ever, one to which nobody adds
-// has at most these: tests that this decides go away.
+// A place from which nobody takes has at least its initial tokens for ever, one to which nobody
+// adds has at most these: tests that this decides go away.
 bool simplify_monotone_places(ReductionNet& net) {
     bool any = false;
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {

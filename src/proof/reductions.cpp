@@ -94,9 +94,8 @@ ReductionNet::ReductionNet(const PlainNet& net, const ReductionGoal& goal)
 
 const std::vector<std::uint32_t>& ReductionNet::at(std::uint32_t place) {
     std::vector<std::uint32_t>& list = at_[place];
-    std::erase_if(list, [&](std::uint32_t t) {
-        return !transitions[t].alive || find(t, place) == nullptr;
-    });
+    std::erase_if(
+        list, [&](std::uint32_t t) { return !transitions[t].alive || find(t, place) == nullptr; });
     return list;
 }
 
@@ -146,9 +145,8 @@ void ReductionNet::drop_limit(std::uint32_t t, std::uint32_t p) {
 
 bool ReductionNet::visible(const ReductionTransition& t) const {
     return preserves != Preserves::kDeadlock &&
-           std::any_of(t.arcs.begin(), t.arcs.end(), [&](const ReductionArc& a) {
-               return a.change != 0 && keep[a.place] != 0;
-           });
+           std::any_of(t.arcs.begin(), t.arcs.end(),
+                       [&](const ReductionArc& a) { return a.change != 0 && keep[a.place] != 0; });
 }
 
 Reduction ReductionNet::finish(const PlainNet& original) const {
@@ -184,8 +182,7 @@ Reduction ReductionNet::finish(const PlainNet& original) const {
         });
         out.net.level.push_back(0);
         out.net.optional.push_back(t.optional ? 1 : 0);
-        out.sequences.items.insert(out.sequences.items.end(), t.sequence.begin(),
-                                   t.sequence.end());
+        out.sequences.items.insert(out.sequences.items.end(), t.sequence.begin(), t.sequence.end());
         out.sequences.starts.push_back(static_cast<std::uint32_t>(out.sequences.items.size()));
     }
     out.net.left_out = original.left_out;
@@ -213,10 +210,9 @@ std::vector<std::uint32_t> Reduction::original(const PlainNet& whole,
     for (const std::vector<std::uint32_t>& sequence : rest) {
         for (;;) {
             Marking next = marking;
-            const bool fired =
-                std::all_of(sequence.begin(), sequence.end(), [&](std::uint32_t t) {
-                    return whole.enabled(next, t) && whole.fire(next, t);
-                });
+            const bool fired = std::all_of(sequence.begin(), sequence.end(), [&](std::uint32_t t) {
+                return whole.enabled(next, t) && whole.fire(next, t);
+            });
             if (!fired) {
                 break;
             }
@@ -241,7 +237,8 @@ Reduction reduce(const PlainNet& net, const ReductionGoal& goal, const Budget& b
             }
         }
         const SubNet part = slice(net, kept);
-        std::vector<std::uint8_t> place(net.place_count(), 0), transition(net.transition_count(), 0);
+        std::vector<std::uint8_t> place(net.place_count(), 0),
+            transition(net.transition_count(), 0);
         for (const std::uint32_t p : part.places) {
             place[p] = 1;
         }
@@ -266,8 +263,8 @@ Reduction reduce(const PlainNet& net, const ReductionGoal& goal, const Budget& b
         changed = false;
         for (const auto rule :
              {remove_never_enabled, simplify_monotone_places, remove_untested_places,
-              remove_implied_places, remove_dominated_transitions, remove_eaters, remove_beside_always_enabled,
-              agglomerate_after, agglomerate_before}) {
+              remove_implied_places, remove_dominated_transitions, remove_eaters,
+              remove_beside_always_enabled, agglomerate_after, agglomerate_before}) {
             if (meter.look(work.applied, 0, 0, 0) != Ended::kDone) {
                 return work.finish(net);
             }

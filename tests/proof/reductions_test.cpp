@@ -22,9 +22,20 @@ int rounds(int usual) {
 // Shapes in which rules apply: long chains beside small conflicts.
 PlainNet random_net(Chance& chance, int round) {
     if (round % 2 == 0) {
-        return small_net(chance, {.places = 6, .transitions = 6, .weights = round % 3 == 0, .reads = round % 4 == 0, .inhibitors = round % 8 == 0, .optional = round % 6 == 0, .conservative = round % 10 != 0});
+        return small_net(chance, {.places = 6,
+                                  .transitions = 6,
+                                  .weights = round % 3 == 0,
+                                  .reads = round % 4 == 0,
+                                  .inhibitors = round % 8 == 0,
+                                  .optional = round % 6 == 0,
+                                  .conservative = round % 10 != 0});
     }
-    PlainNet net = small_net(chance, {.places = 3, .transitions = 3, .weights = round % 3 == 0, .reads = round % 4 == 1, .inhibitors = round % 8 == 1, .optional = round % 6 == 1});
+    PlainNet net = small_net(chance, {.places = 3,
+                                      .transitions = 3,
+                                      .weights = round % 3 == 0,
+                                      .reads = round % 4 == 1,
+                                      .inhibitors = round % 8 == 1,
+                                      .optional = round % 6 == 1});
     const std::uint32_t base = net.place_count();
     const std::uint32_t extra = 1 + chance.below(4);
     for (std::uint32_t i = 0; i < extra; ++i) {
@@ -33,7 +44,8 @@ PlainNet random_net(Chance& chance, int round) {
     for (std::uint32_t i = 0; i < extra + 1; ++i) {  // a chain through the extra places
         std::map<std::uint32_t, std::uint32_t> takes, gives;
         takes[i == 0 ? chance.below(base) : base + i - 1] = 1;
-        gives[i == extra ? chance.below(base) : base + i] = chance.one_in(5) && round % 3 == 0 ? 2 : 1;
+        gives[i == extra ? chance.below(base) : base + i] =
+            chance.one_in(5) && round % 3 == 0 ? 2 : 1;
         if (chance.one_in(4)) {
             takes[chance.below(base)] += 1;
         }
@@ -86,7 +98,8 @@ bool replay(const PlainNet& net, const std::vector<std::uint32_t>& sequence, Mar
 // is made on the way: sets of states that the same word leads to.
 class Words {
  public:
-    Words(const PlainNet& net, const Space& space, const std::vector<std::uint32_t>& places) : space_(space) {
+    Words(const PlainNet& net, const Space& space, const std::vector<std::uint32_t>& places)
+        : space_(space) {
         for (std::uint32_t s = 0; s < space.markings.size(); ++s) {
             letter_.push_back(seen(space.markings[s], places));
         }
@@ -177,7 +190,9 @@ bool same_words(const Words& a, const Words& b) {
 
 }  // namespace
 
-TEST_CASE("a dead marking is reachable in the reduced net iff it is in the full one, and its path leads there [law]") {
+TEST_CASE(
+    "a dead marking is reachable in the reduced net iff it is in the full one, and its path leads "
+    "there [law]") {
     Chance chance(41);
     int dead_ends = 0, reduced_rounds = 0;
     for (int round = 0; round < rounds(4000); ++round) {
@@ -215,7 +230,9 @@ TEST_CASE("a dead marking is reachable in the reduced net iff it is in the full 
     CHECK(reduced_rounds > 100);
 }
 
-TEST_CASE("seen through the kept places, the reduced net reaches the same markings, by sequences that fire [law]") {
+TEST_CASE(
+    "seen through the kept places, the reduced net reaches the same markings, by sequences that "
+    "fire [law]") {
     Chance chance(42);
     for (int round = 0; round < rounds(4000); ++round) {
         const PlainNet net = random_net(chance, round);
@@ -223,7 +240,8 @@ TEST_CASE("seen through the kept places, the reduced net reaches the same markin
         if (!full.complete) {
             continue;
         }
-        ReductionGoal goal{Preserves::kReachability, std::vector<std::uint8_t>(net.place_count(), 0)};
+        ReductionGoal goal{Preserves::kReachability,
+                           std::vector<std::uint8_t>(net.place_count(), 0)};
         std::vector<std::uint32_t> kept, kept_now;
         for (std::uint32_t p = 0; p < net.place_count(); ++p) {
             if (chance.one_in(3)) {
@@ -255,7 +273,9 @@ TEST_CASE("seen through the kept places, the reduced net reaches the same markin
     }
 }
 
-TEST_CASE("seen through the kept places and up to repetition, the reduced net has the same maximal runs [law]") {
+TEST_CASE(
+    "seen through the kept places and up to repetition, the reduced net has the same maximal runs "
+    "[law]") {
     Chance chance(43);
     for (int round = 0; round < rounds(4000); ++round) {
         const PlainNet net = random_net(chance, round);

@@ -134,7 +134,7 @@ inline Space whole_space(const PlainNet& net, std::uint32_t limit = 5000,
             }
             net.fire(m, t);
             if (space.markings.size() >= limit ||
-                *std::max_element(m.begin(), m.end()) > most_tokens) {
+                std::any_of(m.begin(), m.end(), [&](std::uint32_t n) { return n > most_tokens; })) {
                 space.complete = false;
                 return space;
             }
