@@ -205,7 +205,7 @@ class Catch final : public Movement {
         const double h = context.figure.height_m;
         const Vec3 facing = rotate(context.now.pelvis.rotation_world, {0, 0, 1});
         accent_.ahead_world = normalized(Vec3{facing.x, 0, facing.z}, {0, 0, 1});
-        accent_.lift_m = through_rests({{0, 0}, {0.22, -0.022 * h}, {0.75, 0}});
+        accent_.lift_m = through_rests({{0, 0}, {0.28, -0.022 * h}, {0.8, 0}});
         accent_.ahead_m = through_rests({{0, 0}, {0.25, -0.010 * h}, {0.8, 0}});
         accent_.pitch_rad = through_rests({{0, 0}, {0.22, 0.03}, {0.75, 0}});
         accent_.lean_rad = through_rests({{0, 0}, {0.22, 0.07}, {0.75, 0}});

@@ -90,7 +90,7 @@ class Throw final : public Movement {
                                  {end, {}}});
         accent_.ahead_m = Curve1({{0, {}},
                                   {low_s_, {-0.030 * h, 0, 0}},
-                                  {r, {0.022 * h, 0.12 * h * back, 0}},
+                                  {r, {0.020 * h, 0.10 * h * back, 0}},
                                   {end, {}}});
         accent_.pitch_rad =
             Curve1({{0, {}}, {low_s_, {0.24, 0, 0}}, {r, {0.02, -0.3 * back, 0}}, {end, {}}});

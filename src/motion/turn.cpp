@@ -27,6 +27,7 @@ constexpr double kStep_s = 0.22;  // a step at ease
 constexpr double kAside = 0.040;  // of the height, at 90 degrees
 constexpr double kClearance_m = 0.028;
 constexpr double kGround_s = 0.012;  // both feet stand this long between two steps
+constexpr double kBrake_s = 0.18, kStride_m_s = 0.45;
 constexpr double kLongest = 0.9972;  // reach of the legs, as for walking
 
 class Turn final : public Movement {
@@ -189,20 +190,26 @@ class Turn final : public Movement {
             end.legs[i] = feet_[i].at(T_);
         }
         const PelvisControl home = pelvis_over_feet(figure_, end);
-        // A little over the foot that stands, while the other swings.
-        std::vector<Waypoint1> x, z;
-        for (const Swing& s : swings_) {
-            const double t = (s.begin_s + s.end_s) / 2, part = t / T_;
-            const Vec3 way = lerp(p, home.position_world, smooth_rise(part, 1));
-            const Vec3 stands = feet_[1 - index_of(s.side)].at(t).ankle_world;
-            const Vec3 centre = lerp(centre_[0], centre_[1], part);
-            x.push_back({t, way.x + 0.08 * (stands.x - centre.x)});
-            z.push_back({t, way.z + 0.08 * (stands.z - centre.z)});
+        const Vec3 brake = v * (-1 / kBrake_s);
+        if (v.x * v.x + v.z * v.z < kStride_m_s * kStride_m_s) {
+            pelvis_.x = plan_travel({p.x, v.x, 0}, {home.position_world.x, 0, 0}, T_);
+            pelvis_.z = plan_travel({p.z, v.z, 0}, {home.position_world.z, 0, 0}, T_);
+        } else {
+            // Cut in full stride: it stops at once, then goes over the foot that stands.
+            std::vector<Waypoint1> x, z;
+            for (const Swing& s : swings_) {
+                const double t = (s.begin_s + s.end_s) / 2, part = t / T_;
+                const Vec3 way = lerp(p, home.position_world, smooth_rise(part, 1));
+                const Vec3 stands = feet_[1 - index_of(s.side)].at(t).ankle_world;
+                const Vec3 centre = lerp(centre_[0], centre_[1], part);
+                x.push_back({t, way.x + 0.08 * (stands.x - centre.x)});
+                z.push_back({t, way.z + 0.08 * (stands.z - centre.z)});
+            }
+            pelvis_.x =
+                minimum_jerk({0, {p.x, v.x, brake.x}}, x, {T_, {home.position_world.x, 0, 0}});
+            pelvis_.z =
+                minimum_jerk({0, {p.z, v.z, brake.z}}, z, {T_, {home.position_world.z, 0, 0}});
         }
-        // It begins to stop at once.
-        const Vec3 brake = v * (-1 / 0.18);
-        pelvis_.x = minimum_jerk({0, {p.x, v.x, brake.x}}, x, {T_, {home.position_world.x, 0, 0}});
-        pelvis_.z = minimum_jerk({0, {p.z, v.z, brake.z}}, z, {T_, {home.position_world.z, 0, 0}});
         yaw_ = minimum_jerk({0, {from_, 0, 0}}, {}, {T_, {to_, 0, 0}});
         HeightPlan height;
         // One that rises is about to stretch its legs: it stops sooner still.

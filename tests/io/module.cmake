@@ -8,4 +8,5 @@ target_include_directories(puppetri_test_readers PUBLIC "${CMAKE_CURRENT_SOURCE_
 target_link_libraries(puppetri_test_readers PUBLIC Eigen3::Eigen PRIVATE TinyGLTF::TinyGLTF)
 target_compile_features(puppetri_test_readers PUBLIC cxx_std_20)
 target_link_libraries(test_io PRIVATE puppetri_test_readers)
-target_sources(test_io PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp")
+target_sources(test_io PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp"
+    "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/example_motion.cpp")
