@@ -36,6 +36,9 @@ DiagramStore::DiagramStore(const Budget& budget, const char* method)
     : budget_(budget), meter_(std::make_unique<Meter>(budget_, method)) {
     buckets_.resize(1u << 12, kEmpty);
     cache_.resize(kCacheAtFirst);
+    // Small budgets are swept often: what they cannot afford is garbage.
+    collect_at_ = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(budget.bytes >> 11, 1u << 9, 1u << 18));
     free_cells_.resize(kExactClasses + 1 + 4 * 32, 0);
     account(buckets_.size() * sizeof(NodeId) + cache_.size() * sizeof(Cached));
     NodeId id = 0;
