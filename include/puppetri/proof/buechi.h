@@ -36,7 +36,8 @@ struct Buechi {
 
 // Sequences of states (sets of atoms) that satisfy the formula; `negated`: those that do not.
 // Needs  logic kLtl or kState.
-// Gives  nothing for more than 64 atoms or untils, or when the automaton outgrows `max_states`.
+// Gives  nothing for more than 64 atoms or untils, or when the automaton outgrows `max_states`
+//        or the work of so many (about a second for 4096; counted in steps, not by a clock).
 //        States from which nothing is accepted are left out; equal ones are merged.
 // Source P. Gastin, D. Oddoux, Fast LTL to Büchi automata translation (CAV 2001): very weak
 //        alternating automaton, then generalized Büchi automaton with dominated edges removed;

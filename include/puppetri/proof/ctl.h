@@ -36,7 +36,7 @@ class CtlChecker {
     // Needs  logic kState or kCtl. Atom i of the formula is atom atoms[i] of the graph.
     // Gives  nothing when the budget ends (time or cancellation).
     // Cost   O(formula * (states + edges)); 4 bytes per edge for all formulas together, 4 per state
-    //        and 1/4 per state and node of the formula.
+    //        and 1/8 per state and node of the formula (1/4 where must and may differ).
     std::optional<Labels> label(const Temporal& formula, std::span<const std::uint32_t> atoms,
                                 const Budget& budget);
     // In the initial state.
@@ -50,16 +50,16 @@ class CtlChecker {
                                   const Budget& budget);
 
  private:
-    struct Sets;
-    std::optional<Sets> all_labels(const Temporal& formula, std::span<const std::uint32_t> atoms,
-                                   const Budget& budget);
+    std::optional<std::vector<Labels>> all_labels(const Temporal& formula,
+                                                  std::span<const std::uint32_t> atoms,
+                                                  bool keep_all, const Budget& budget);
     const net::Rows<std::uint32_t>& backwards();
-    StateBits somewhere_next(const StateBits& a);
+    bool cut(std::uint32_t state) const;
+    StateBits some_next(const StateBits& a);
     StateBits some_globally(const StateBits& a, bool past_cuts);
-    void or_cut(StateBits& set) const;
 
     const Graph& graph_;
-    net::Rows<std::uint32_t> predecessors_;
+    net::Rows<std::uint32_t> predecessors_;  // empty until needed
 };
 
 }  // namespace puppetri::proof

@@ -46,6 +46,7 @@ class StateBits {
 StateBits states_where_atom_may(const Graph& graph, std::uint32_t atom);
 StateBits states_where_atom_must(const Graph& graph, std::uint32_t atom);
 // A maximal path may end here: no edge leaves, or those that do need never be taken (kOptional).
+// Not where the graph was cut: nobody knows.
 bool may_end(const Graph& graph, std::uint32_t state);
 
 // Row s: the sources of the edges into s. Cost: 4 bytes per edge and state.

@@ -20,7 +20,7 @@ struct Emptiness {
     // or the budget ended.
     Truth empty = Truth::kUnknown;
     Ended ended = Ended::kDone;
-    // Of kFalse; of kUnknown: what was found, if anything.
+    // Where asked for: of kFalse; of kUnknown what was found, if anything.
     std::optional<Lasso> lasso;
     std::uint64_t states = 0, edges = 0;  // of the product, as far as it was made
 };
@@ -31,7 +31,8 @@ struct Emptiness {
 //        component.
 // Source J.-M. Couvreur, On-the-fly verification of linear temporal logic (FM 1999).
 Emptiness check_emptiness(const Graph& graph, const Buechi& automaton,
-                          std::span<const std::uint32_t> atoms, const Budget& budget);
+                          std::span<const std::uint32_t> atoms, const Budget& budget,
+                          bool with_lasso = true);
 
 struct LtlAnswer {
     Truth holds = Truth::kUnknown;
@@ -42,6 +43,7 @@ struct LtlAnswer {
 // On all paths from the initial state.
 // Needs  logic kLtl or kState.
 LtlAnswer check_ltl(const Graph& graph, const Temporal& formula,
-                    std::span<const std::uint32_t> atoms, const Budget& budget);
+                    std::span<const std::uint32_t> atoms, const Budget& budget,
+                    bool with_lasso = true);
 
 }  // namespace puppetri::proof
