@@ -15,6 +15,7 @@ Command run_command();
 Command draw_command();
 Command export_command();
 Command render_command();
+Command convert_command();
 
 // In the order of the help.
 std::vector<Command> all_commands();

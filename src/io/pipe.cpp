@@ -221,6 +221,12 @@ class Reader {
         return classes_.size() == 1 ? classes_[0] : std::string("Default");
     }
 
+    // PIPE writes a name for everything, and mostly the id once more.
+    static std::string caption(pugi::xml_node node, const std::string& id) {
+        std::string name = value_of(node, "name");
+        return name == id ? "" : name;
+    }
+
     void refuse_tags(pugi::xml_node node, const std::string& element) {
         if (value_of(node, "tagged") == "true") {
             error("not-supported", node, element,
@@ -349,7 +355,7 @@ class Reader {
         for (const std::uint32_t token : raw_place.classes) {
             net::PlaceDraft place;
             place.path = coloured_ ? raw_place.id + "(" + class_name(token) + ")" : raw_place.id;
-            place.caption = value_of(raw_place.xml, "name");
+            place.caption = caption(raw_place.xml, raw_place.id);
             place.where = text_.where(raw_place.xml);
             place.capacity = capacity;
             for (const auto& [of, count] : raw_place.marking) {
@@ -382,7 +388,7 @@ class Reader {
         for (const pugi::xml_node node : transitions_) {
             net::TransitionDraft t;
             t.path = node.attribute("id").value();
-            t.caption = value_of(node, "name");
+            t.caption = caption(node, t.path);
             t.where = text_.where(node);
             const std::string element = "transition " + t.path;
             for (const pugi::xml_node c : node.children()) {
