@@ -50,36 +50,46 @@ void SymbolicTables::explore() {
         ended = Ended::kMemory;
         return;
     }
-    Budget rest = budget;
     const Meter clock(budget, "symbolic");
-    for (std::uint64_t work = kFirstWork;; work *= 4) {
-        for (const PlaceGroups& order : orders) {
-            rest.seconds = budget.seconds - clock.seconds();
-            levels = std::make_unique<SymbolicLevels>(net, order);
-            store = std::make_unique<DiagramStore>(rest, "symbolic");
-            saturation = std::make_unique<Saturation>(*store, *levels);
-            store->limit_work(work);
-            all = saturation->reachable();
-            peak_bytes = std::max(peak_bytes, store->peak_bytes());
-            ended = store->ended();
-            if (ended == Ended::kDone) {
-                store->limit_work(~std::uint64_t{0});
-                levels->close();
-                store->charge(levels->bytes());
-                store->keep(all);
-                initial = node_of(net.initial);
-                store->keep(initial);
-                explored = true;
+    for (std::uint64_t work = kFirstWork; !orders.empty(); work *= 4) {
+        for (std::size_t i = 0; i < orders.size();) {
+            if (try_order(orders[i], work, budget.seconds - clock.seconds())) {
                 return;
             }
-            if (ended != Ended::kStates && ended != Ended::kMemory) {
+            if (ended == Ended::kMemory) {  // more work would need more still
+                orders.erase(orders.begin() + static_cast<std::ptrdiff_t>(i));
+            } else if (ended == Ended::kStates) {
+                ++i;
+            } else {
                 return;
             }
-        }
-        if (ended == Ended::kMemory) {
-            return;
         }
     }
+}
+
+// Gives  whether the space was explored; if not, `ended` says why: kStates when the work was used
+//        up.
+bool SymbolicTables::try_order(const PlaceGroups& order, std::uint64_t work, double seconds) {
+    Budget rest = budget;
+    rest.seconds = seconds;
+    levels = std::make_unique<SymbolicLevels>(net, order);
+    store = std::make_unique<DiagramStore>(rest, "symbolic");
+    saturation = std::make_unique<Saturation>(*store, *levels);
+    store->limit_work(work);
+    all = saturation->reachable();
+    peak_bytes = std::max(peak_bytes, store->peak_bytes());
+    ended = store->ended();
+    if (ended == Ended::kDone) {
+        store->limit_work(~std::uint64_t{0});
+        levels->close();
+        store->charge(levels->bytes());
+        store->keep(all);
+        initial = node_of(net.initial);
+        store->keep(initial);
+        ended = store->ended();  // there may have been no room for this last set
+        explored = ended == Ended::kDone;
+    }
+    return explored;
 }
 
 NodeId SymbolicTables::node_of(std::span<const std::uint32_t> marking) {

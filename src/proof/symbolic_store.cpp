@@ -217,7 +217,7 @@ NodeId DiagramStore::make(std::uint32_t level, std::uint32_t base) {
         const std::uint32_t before = used_;
         collect();
         // Almost nothing came back: the next collection would be due at once.
-        have_cells = used_ < before - before / 8 && allocate(count, offset);
+        have_cells = used_ < before - before / 4 && allocate(count, offset);
         have_node = have_cells && new_node(id);
         if (!have_node) {
             fail(Ended::kMemory);

@@ -25,6 +25,7 @@ struct SymbolicTables {
 
     bool usable() const { return explored && !store->failed(); }
     void explore();
+    bool try_order(const PlaceGroups& order, std::uint64_t work, double seconds);
     NodeId node_of(std::span<const std::uint32_t> marking);  // kEmpty: not reachable for sure
 };
 
