@@ -2,7 +2,6 @@
 #include "place_order.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "puppetri/proof/semiflows.h"
@@ -53,22 +52,23 @@ Hypergraph hypergraph_of(const PlainNet& net, const PlaceGroups& groups) {
     return graph;
 }
 
-// Weighted event span: how many levels a firing walks through, firings high up counting more.
-// Source  R. Siminiceanu, G. Ciardo, "New Metrics for Static Variable Ordering in Decision
-//         Diagrams" (TACAS 2006), moment 1.
-double weighted_span(const Hypergraph& graph, const Order& order) {
+// How many levels firings walk through.
+// Source  the unweighted metric of R. Siminiceanu, G. Ciardo, "New Metrics for Static Variable
+//         Ordering in Decision Diagrams" (TACAS 2006). Their weight for firings high up misled us:
+//         on LamportFastMutEx it prefers the worse direction of every order. Both are tried.
+std::uint64_t span_of(const Hypergraph& graph, const Order& order) {
     std::vector<std::uint32_t> height(graph.vertices);
     for (std::uint32_t i = 0; i < order.size(); ++i) {
-        height[order[i]] = static_cast<std::uint32_t>(order.size()) - i;
+        height[order[i]] = i;
     }
-    double sum = 0;
+    std::uint64_t sum = 0;
     for (const std::vector<std::uint32_t>& edge : graph.edges) {
         std::uint32_t top = 0, bottom = ~0u;
         for (const std::uint32_t v : edge) {
             top = std::max(top, height[v]);
             bottom = std::min(bottom, height[v]);
         }
-        sum += double(top) * double(top - bottom + 1);
+        sum += top - bottom;
     }
     return sum;
 }
@@ -80,7 +80,7 @@ void force(const Hypergraph& graph, Order& order) {
     constexpr int kRounds = 60;
     std::vector<double> position(graph.vertices), centre(graph.edges.size());
     Order best = order;
-    double best_span = weighted_span(graph, order);
+    std::uint64_t best_span = span_of(graph, order);
     int idle = 0;
     for (int round = 0; round < kRounds && idle < 12; ++round, ++idle) {
         for (std::uint32_t i = 0; i < order.size(); ++i) {
@@ -108,7 +108,7 @@ void force(const Hypergraph& graph, Order& order) {
                    : position[a] != position[b] ? position[a] < position[b]
                                                 : a < b;
         });
-        if (const double span = weighted_span(graph, order); span < best_span) {
+        if (const std::uint64_t span = span_of(graph, order); span < best_span) {
             best_span = span;
             best = order;
             idle = 0;
@@ -210,37 +210,38 @@ PlaceGroups exclusive_groups(const PlainNet& net) {
     return groups;
 }
 
-struct Proposal {
-    PlaceGroups groups;
-    double span = 0;
-};
-
-void propose(const PlainNet& net, const PlaceGroups& groups, std::vector<Proposal>& proposals) {
+// Orders of these groups, those with the shortest walks first, each followed by its reverse.
+std::vector<PlaceGroups> orders_of(const PlainNet& net, const PlaceGroups& groups) {
     const Hypergraph graph = hypergraph_of(net, groups);
-    std::vector<Order> orders;
-    Order declared(graph.vertices);
-    std::iota(declared.begin(), declared.end(), 0u);
-    orders.push_back(declared);
-    orders.emplace_back(declared.rbegin(), declared.rend());
+    std::vector<Order> orders(1, Order(graph.vertices));
+    std::iota(orders[0].begin(), orders[0].end(), 0u);
     if (graph.vertices > 2 && graph.vertices <= 3000) {
         orders.push_back(narrow_front(graph, 0));
         orders.push_back(narrow_front(graph, orders.back().back()));
-        for (const std::size_t i : {std::size_t{2}, std::size_t{3}}) {
-            orders.emplace_back(orders[i].rbegin(), orders[i].rend());
-        }
     }
     for (std::size_t i = 0, plain = orders.size(); i < plain; ++i) {
         orders.push_back(orders[i]);
         force(graph, orders.back());
     }
-    for (const Order& order : orders) {
-        Proposal proposal;
-        proposal.span = weighted_span(graph, order);
-        for (const std::uint32_t v : order) {
-            proposal.groups.push_back(groups[v]);
-        }
-        proposals.push_back(std::move(proposal));
+    std::vector<std::pair<std::uint64_t, std::size_t>> ranking;
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        ranking.emplace_back(span_of(graph, orders[i]), i);
     }
+    std::sort(ranking.begin(), ranking.end());
+    std::vector<PlaceGroups> result;
+    for (const auto& [span, i] : ranking) {
+        for (int direction = 0; direction < 2; ++direction) {
+            PlaceGroups ordered;
+            for (const std::uint32_t v : orders[i]) {
+                ordered.push_back(groups[v]);
+            }
+            if (std::find(result.begin(), result.end(), ordered) == result.end()) {
+                result.push_back(std::move(ordered));
+            }
+            std::reverse(orders[i].begin(), orders[i].end());
+        }
+    }
+    return result;
 }
 
 }  // namespace
@@ -250,27 +251,14 @@ std::vector<PlaceGroups> place_orders(const PlainNet& net) {
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
         single[p] = {p};
     }
-    if (single.empty()) {
-        return {{}};
-    }
-    std::vector<PlaceGroups> result;
     const PlaceGroups grouped = exclusive_groups(net);
-    std::vector<Proposal> with_groups, alone;
-    propose(net, grouped, with_groups);
+    std::vector<PlaceGroups> result = orders_of(net, grouped);
     if (grouped != single) {
-        propose(net, single, alone);
-    }
-    for (std::vector<Proposal>* proposals : {&with_groups, &alone}) {
-        std::stable_sort(proposals->begin(), proposals->end(),
-                         [](const Proposal& a, const Proposal& b) { return a.span < b.span; });
-    }
-    // The two kinds in turn, the better grouped ones first.
-    for (std::size_t i = 0; i < std::max(with_groups.size(), alone.size()); ++i) {
-        for (std::vector<Proposal>* proposals : {&with_groups, &alone}) {
-            if (i < proposals->size() &&
-                std::find(result.begin(), result.end(), (*proposals)[i].groups) == result.end()) {
-                result.push_back(std::move((*proposals)[i].groups));
-            }
+        // One pair of orders of single places for two of groups.
+        const std::vector<PlaceGroups> alone = orders_of(net, single);
+        for (std::size_t i = 0, at = 2; i < alone.size(); ++i, at += i % 2 == 0 ? 3 : 1) {
+            at = std::min(at, result.size());
+            result.insert(result.begin() + static_cast<std::ptrdiff_t>(at), alone[i]);
         }
     }
     return result;
