@@ -144,6 +144,7 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
     Choice choice;
     choice.kind = kind;
     choice.element = element;
+    choice.of_delay = kind == ChoiceKind::kDelay;
     if (d.kind == DurationKind::kInterval) {
         Value low = 0, high = 0;
         if (!evaluate(d.a, low) || !evaluate(d.b, high) || low < 0) {

@@ -41,13 +41,18 @@ class Branching final : public net::Chooser {
         depth_ = 0;
     }
 
+    struct Answer {
+        net::ChoiceKind kind = net::ChoiceKind::kTie;
+        std::uint32_t element = 0;
+        std::int64_t answer = 0;
+    };
     // From now on the engine's own questions and their answers are kept here.
-    void record(std::vector<std::int64_t>* answers) { answers_ = answers; }
+    void record(std::vector<Answer>* answers) { answers_ = answers; }
 
     std::int64_t choose(const net::Choice& choice) override {
         const std::int64_t answer = answer_to(choice);
         if (answers_ != nullptr) {
-            answers_->push_back(answer);
+            answers_->push_back({choice.kind, choice.element, answer});
         }
         return answer;
     }
@@ -82,7 +87,7 @@ class Branching final : public net::Chooser {
     std::vector<Turn> turns_;
     std::size_t depth_ = 0;
     std::vector<std::pair<net::ChoiceKind, std::uint32_t>> narrowed_;
-    std::vector<std::int64_t>* answers_ = nullptr;
+    std::vector<Answer>* answers_ = nullptr;
 };
 
 }  // namespace puppetri::proof

@@ -76,7 +76,6 @@ std::int64_t Driver::begin(Kind kind, std::uint32_t element, SimTime low, SimTim
     Begun b{kind, element, 0, least, most};
     if (most > 0 && (least > 0 || chooser.pick(2) != 0)) {
         b.number = next_number_++;
-        b.low = std::max<std::int64_t>(1, least);
     }
     begun_.push_back(b);
     return b.number;

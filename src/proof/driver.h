@@ -50,6 +50,7 @@ class Driver final : private net::Timekeeper, private net::MovementHost {
     void start();
     void restore(net::State state, std::uint32_t outside_so_far);
     Did step(Step& out);
+    bool may_come() const { return outside < world_->outside_events; }
     // Of the last step: time could have passed instead; all that is free to happen or not.
     bool settled() const { return settled_; }
     // Nothing makes the next step necessary but the outside.

@@ -289,9 +289,6 @@ void StateCodec::encode(const State& s, std::vector<std::uint8_t>& out,
     if (n.paced && form_ == ClockForm::kExact) {
         w.count(intern(std::max<std::int64_t>(0, s.next_beat - s.now)));
     }
-    if (counts_events_) {
-        w.count(s.free_events);
-    }
 }
 
 State StateCodec::decode(std::span<const std::uint8_t> bytes, std::size_t* length) const {
@@ -407,9 +404,6 @@ State StateCodec::decode(std::span<const std::uint8_t> bytes, std::size_t* lengt
     }
     if (n.paced && form_ == ClockForm::kExact) {
         s.next_beat = times_[r.count()];
-    }
-    if (counts_events_) {
-        s.free_events = r.small();
     }
     if (length != nullptr) {
         *length = r.at();

@@ -42,15 +42,13 @@ class StateCodec {
     // `length`: how many bytes the state takes; what follows is its maker's.
     net::State decode(std::span<const std::uint8_t> bytes, std::size_t* length = nullptr) const;
 
-    // The number of events from outside is part of the state.
-    void count_events(bool yes) { counts_events_ = yes; }
+    // Times, each once, and their numbers.
+    std::uint32_t intern(std::int64_t time);
+    std::int64_t time(std::uint32_t number) const { return times_[number]; }
 
  private:
-    std::uint32_t intern(std::int64_t time);
-
     const net::NetTables* tables_;
     ClockForm form_;
-    bool counts_events_ = false;
     std::vector<std::uint8_t> made_ready_;  // per place with records: an event makes it ready
     std::vector<std::int64_t> times_;
     std::unordered_map<std::int64_t, std::uint32_t> numbers_;

@@ -45,6 +45,8 @@ bool carries_time_left(const net::Net& net);
 std::string time_in_words(std::int64_t ticks);
 // Plays a script in an engine as anybody would; false, and why: it does something else.
 bool plays(const World& world, const Script& script, std::string* trouble);
+std::optional<Script> class_script(const TimedGraph& graph, std::span<const std::uint32_t> path,
+                                   std::string* trouble);
 
 class TimedBuilder {
  public:

@@ -74,6 +74,9 @@ std::string TimedGraph::words_of_edge(std::uint32_t edge) const {
     const NetTables& n = states->world.net->tables();
     const std::uint32_t label = graph.edges.items[edge].label;
     if (label == Edge::kPass) {
+        if (states->several_starts && edge < graph.edges.starts[1]) {
+            return "it begins";
+        }
         if (graph.low_ticks.empty()) {
             return "time passes";
         }
@@ -177,6 +180,9 @@ std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path,
         }
         return std::nullopt;
     };
+    if (states->form == ClockForm::kClasses) {
+        return class_script(*this, path, trouble);
+    }
     if (states->form == ClockForm::kReadiness) {
         return none("a readiness graph knows no times");
     }
@@ -189,14 +195,19 @@ std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path,
         const auto wanted = states->store[state];
         return std::equal(bytes.begin(), bytes.end(), wanted.begin(), wanted.end());
     };
-    std::vector<std::int64_t> answers;
+    std::vector<Branching::Answer> answers;
     d.chooser.record(&answers);
+    const auto keep = [&] {
+        for (const Branching::Answer& a : answers) {
+            script.answers.push_back(a.answer);
+        }
+    };
     // The start is a choice of its own where there are several.
     std::uint32_t at = graph.initial;
     std::size_t next = 0;
     if (states->several_starts) {
         if (path.empty()) {
-            return none("the path has not begun");
+            return Script{};  // nothing to be done yet
         }
         at = graph.edges.items[path[next++]].target;
     }
@@ -210,7 +221,7 @@ std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path,
     if (!found) {
         return none("the start was not found again");
     }
-    script.answers = answers;
+    keep();
     std::vector<SimTime> movements = d.movements;
     for (; next < path.size(); ++next) {
         const Edge edge = graph.edges.items[path[next]];
@@ -231,7 +242,7 @@ std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path,
             return none("a step of the path was not found again");
         }
         movements = d.movements;
-        script.answers.insert(script.answers.end(), answers.begin(), answers.end());
+        keep();
         const SimTime now{d.engine.state().now};
         if (edge.label == Edge::kPass) {
             if (step.ticks == 0) {

@@ -28,6 +28,7 @@ struct Choice {
     ChoiceKind kind = ChoiceKind::kTie;
     // Place, transition or sensor; none for ties and events.
     std::uint32_t element = Index<void>::kNone;
+    bool of_delay = false;  // kInterval: the element is a transition, not a place
     // How many answers there are: 0 .. options - 1. If 0, the answer is a time in [low, high].
     std::uint32_t options = 0;
     SimTime low, high;

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "class_builder.h"
+
+#include <algorithm>
+
+#include "puppetri/net/tables.h"
+
+namespace puppetri::proof {
+
+using namespace net;
+
+namespace {
+
+void write_count(std::uint64_t x, std::vector<std::uint8_t>& out) {
+    for (; x >= 0x80; x >>= 7) {
+        out.push_back(static_cast<std::uint8_t>(x | 0x80));
+    }
+    out.push_back(static_cast<std::uint8_t>(x));
+}
+
+std::uint64_t read_count(std::span<const std::uint8_t> bytes, std::size_t& at) {
+    std::uint64_t x = 0;
+    for (int shift = 0;; shift += 7) {
+        const std::uint8_t b = bytes[at++];
+        x |= std::uint64_t{b & 0x7Fu} << shift;
+        if (b < 0x80) {
+            return x;
+        }
+    }
+}
+
+}  // namespace
+
+ClassBuilder::ClassBuilder(const GraphRequest& request, bool observed)
+    : TimedBuilder(request, ClockForm::kClasses, "state classes"), observed_(observed) {
+    check(request);
+    states_ = graph_.states.get();
+    zone_ = passed_ = Zone(observed ? 1 : 0);
+    driver_->choose_with(
+        [](void* self, Driver& driver, std::vector<std::int64_t>& over) {
+            return static_cast<ClassBuilder*>(self)->choose(driver, over);
+        },
+        this);
+}
+
+void ClassBuilder::check(const GraphRequest& request) {
+    const NetTables& n = request.net.tables();
+    for (std::string& what : misused_time_left(request.net)) {
+        graph_.why_not.push_back(std::move(what));
+    }
+    if (carries_time_left(request.net)) {
+        graph_.why_not.emplace_back("a token carries the time left of another");
+    }
+    for (const DelayTable& d : n.delays) {
+        if (d.memory == DelayMemory::kAge) {
+            graph_.why_not.push_back("transition " + std::string(n.transitions.path(d.transition)) +
+                                     " has a delay that is stopped and goes on");
+        }
+    }
+    std::vector<bool> unordered(n.rich.size(), false);
+    for (std::uint32_t r = 0; r < n.rich.size(); ++r) {
+        const std::uint32_t d = n.place[n.rich[r].place].duration;
+        unordered[r] = d != kNoIndex && n.durations[d].kind != DurationKind::kConstant &&
+                       n.durations[d].kind != DurationKind::kOpen;
+    }
+    for (const Special& s : n.specials) {
+        for (const OutputTable& out : s.outputs) {
+            if (out.lasts.valid() && out.rich != kNoIndex) {
+                unordered[out.rich] = true;
+            }
+        }
+    }
+    for (std::uint32_t r = 0; r < n.rich.size(); ++r) {
+        if (unordered[r] && n.rich[r].keeps_order) {
+            graph_.why_not.push_back("place " + std::string(n.places.path(n.rich[r].place)) +
+                                     " keeps the order of tokens that last differently long");
+        }
+    }
+    for (const Special& s : n.specials) {
+        for (const ArcTable& arc : s.arcs) {
+            if (arc.rich != kNoIndex && unordered[arc.rich] &&
+                (arc.kind == ArcKind::kTakeNow || arc.kind == ArcKind::kReadNow)) {
+                graph_.not_exact.push_back(
+                    "transition " + std::string(n.transitions.path(s.transition)) +
+                    ": any of the waiting tokens of " + std::string(n.places.path(arc.place)) +
+                    " was taken for the first");
+            }
+        }
+    }
+}
+
+TimedGraph ClassBuilder::make() {
+    const World& world = graph_.states->world;
+    const NetTables& n = request_.net.tables();
+    for (const std::uint32_t e : world.free_events) {
+        if (!n.declarations.events[e].outside) {
+            graph_.not_exact.push_back("event " + std::string(n.events.path(e)) +
+                                       " is raised by a movement: it was tried at any instant");
+        }
+    }
+    if (world.free_sensors.size() > 6) {
+        graph_.not_over.emplace_back("more than six sensors change at one instant");
+    }
+    graph_.assumptions = assumed(world);
+    graph_.graph.over = graph_.not_over.empty();
+    graph_.graph.exact = graph_.not_exact.empty();
+    return build();
+}
+
+void ClassBuilder::follow(const TimedGraph& graph) {
+    states_ = graph.states.get();
+    graph_.states->world = states_->world;
+}
+
+void ClassBuilder::enter(std::uint32_t state) {
+    std::size_t at = 0;
+    states_->decode(state, nullptr, &at);
+    const std::span<const std::uint8_t> bytes = states_->store[state];
+    zone_ = Zone(static_cast<std::uint32_t>(read_count(bytes, at)));
+    for (std::uint32_t i = 0; i <= zone_.variables(); ++i) {
+        for (std::uint32_t j = 0; j <= zone_.variables(); ++j) {
+            zone_.set(i, j, states_->codec.time(static_cast<std::uint32_t>(read_count(bytes, at))));
+        }
+    }
+}
+
+// Which variables reach 0 first, all together. The first of them by number leads: those before it
+// are later, those after it equal or later. Every choice that is offered is possible.
+bool ClassBuilder::choose(Driver& driver, std::vector<std::int64_t>& over) {
+    const std::uint32_t n = zone_.variables() - (observed_ ? 1 : 0);
+    if (n == 0) {
+        return false;
+    }
+    const auto led = [&](std::uint32_t i, Zone& z) {
+        for (std::uint32_t j = 1; j <= n; ++j) {
+            if (j != i && !z.add(i, j, j < i ? Bound::below(0) : Bound::at_most(0))) {
+                return false;
+            }
+        }
+        return true;
+    };
+    std::vector<std::uint32_t> leaders;
+    for (std::uint32_t i = 1; i <= n; ++i) {
+        Zone z = zone_;
+        if (led(i, z)) {
+            leaders.push_back(i);
+        }
+    }
+    // With events from outside time may also end in between.
+    const bool between = !driver.world().free_events.empty() && driver.may_come();
+    const auto count = static_cast<std::uint32_t>(leaders.size());
+    const std::uint32_t answer = driver.chooser.pick(count + (between ? 1 : 0));
+    passed_ = zone_;
+    if (answer == count) {
+        low_ = 1;
+        high_ = SimTime::never().ticks;
+        const auto earlier = [&](std::uint32_t i) {
+            const std::int64_t most = zone_.bound(i, 0);
+            if (most != Bound::kInfinite) {
+                passed_.set(i, 0, Bound::below(Bound::limit(most)));
+            }
+            return most;
+        };
+        for (std::uint32_t i = 1; i <= n; ++i) {
+            const std::int64_t most = earlier(i);
+            high_ = most == Bound::kInfinite ? high_ : std::min(high_, Bound::limit(most) - 1);
+            passed_.set(0, i, Bound::below(0));
+        }
+        if (observed_) {
+            earlier(n + 1);
+            passed_.set(0, n + 1, Bound::kInfinite);
+        }
+        high_ = std::max(low_, high_);
+        return passed_.close() && !(passed_ == zone_);
+    }
+    const std::uint32_t leader = leaders[answer];
+    led(leader, passed_);
+    over.push_back(leader);
+    for (std::uint32_t j = leader + 1; j <= n; ++j) {
+        const bool may_equal = !passed_.would_be_empty(j, leader, Bound::at_most(0));
+        const bool may_wait = !passed_.would_be_empty(leader, j, Bound::below(0));
+        const bool equal = may_equal && (!may_wait || driver.chooser.pick(2) == 0);
+        if (equal) {
+            passed_.add(j, leader, Bound::at_most(0));
+            over.push_back(j);
+        } else {
+            passed_.add(leader, j, Bound::below(0));
+        }
+    }
+    const std::int64_t least = passed_.bound(0, leader);
+    const std::int64_t most = passed_.bound(leader, 0);
+    low_ = -Bound::limit(least) + (Bound::strict(least) ? 1 : 0);
+    high_ = most == Bound::kInfinite ? SimTime::never().ticks
+                                     : Bound::limit(most) - (Bound::strict(most) ? 1 : 0);
+    high_ = std::max(low_, high_);
+    passed_.fall_until(leader);
+    return true;
+}
+
+std::pair<std::int64_t, std::int64_t> ClassBuilder::ticks(const Driver::Step& step) {
+    return step.label == Edge::kPass && !driver_->from_outside()
+               ? std::pair{low_, high_}
+               : std::pair<std::int64_t, std::int64_t>{0, 0};
+}
+
+// Variables are numbered as they are met in the marking; alike tokens of one place, which are met
+// in any order, by their bounds.
+bool ClassBuilder::encode(Driver& driver, const Driver::Step& step,
+                          std::vector<std::uint8_t>& out) {
+    const bool passed = step.label == Edge::kPass && !driver.from_outside();
+    const Zone& before = passed ? passed_ : zone_;
+    const std::uint32_t old = before.variables() - (observed_ ? 1 : 0);
+    collect_waiting(request_.net, driver.engine.state(), waiting_);
+    std::vector<std::int64_t> numbers;
+    std::vector<std::uint32_t> group;  // the place of alike tokens; none
+    for (const Waiting& w : waiting_) {
+        if (std::find(numbers.begin(), numbers.end(), w.number) == numbers.end()) {
+            numbers.push_back(w.number);
+            group.push_back(w.kind == Waiting::kPlace ? w.element : kNoIndex);
+        }
+    }
+    std::vector<std::uint32_t> from;
+    for (const std::int64_t number : numbers) {
+        from.push_back(number <= old ? static_cast<std::uint32_t>(number) : Zone::kFresh);
+    }
+    if (observed_) {
+        from.push_back(old + 1);
+    }
+    Zone zone = before.chosen(from);
+    for (const Driver::Begun& b : driver.begun()) {
+        const auto at = std::find(numbers.begin(), numbers.end(), b.number);
+        if (at != numbers.end()) {
+            const auto i = static_cast<std::uint32_t>(at - numbers.begin()) + 1;
+            zone.set(i, 0, Bound::at_most(b.high));
+            zone.set(0, i, b.low == 0 ? Bound::below(0) : Bound::at_most(-b.low));
+        }
+    }
+    for (std::uint32_t i = 1; i <= zone.variables(); ++i) {
+        for (std::uint32_t j = 1; j <= zone.variables(); ++j) {
+            if (i != j && (from[i - 1] == Zone::kFresh || from[j - 1] == Zone::kFresh)) {
+                zone.set(i, j, Bound::add(zone.bound(i, 0), zone.bound(0, j)));
+            }
+        }
+    }
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t i = 1; i <= zone.variables(); ++i) {
+        order.push_back(i);
+    }
+    for (std::size_t i = 0; i < numbers.size();) {
+        std::size_t end = i + 1;
+        while (end < numbers.size() && group[i] != kNoIndex && group[end] == group[i]) {
+            ++end;
+        }
+        std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(i),
+                         order.begin() + static_cast<std::ptrdiff_t>(end),
+                         [&zone](std::uint32_t a, std::uint32_t b) {
+                             return std::pair{zone.bound(a, 0), zone.bound(0, a)} <
+                                    std::pair{zone.bound(b, 0), zone.bound(0, b)};
+                         });
+        i = end;
+    }
+    track_.zone = zone.chosen(order);
+    track_.numbers.clear();
+    std::unordered_map<std::int64_t, std::uint32_t> variables;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const std::int64_t number = numbers[order[i] - 1];
+        variables[number] = static_cast<std::uint32_t>(i);
+        track_.numbers.push_back(number);
+    }
+    if (!keep(driver, track_.zone)) {
+        return false;
+    }
+    states_->encode(driver, out, &variables);
+    write_count(track_.zone.variables(), out);
+    for (const std::int64_t b : track_.zone.bounds()) {
+        write_count(states_->codec.intern(b), out);
+    }
+    return true;
+}
+
+}  // namespace puppetri::proof

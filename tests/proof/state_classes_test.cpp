@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// State classes: dense time against closed forms, and paths that become runs.
+#include "puppetri/proof/state_classes.h"
+
+#include <doctest/doctest.h>
+
+#include "puppetri/proof/timed_exact.h"
+#include "timed_nets.h"
+
+using namespace puppetri;
+using namespace puppetri::proof;
+using namespace puppetri::test;
+using net::Formula;
+using net::Maker;
+
+namespace {
+
+const Budget kBudget;
+constexpr std::int64_t kMs = kTicksPerMillisecond;
+
+TEST_CASE("with single durations classes are the exact states [agree]") {
+    for (const net::Net& net : {walk_net(3), walk_net(4), ball_net()}) {
+        const TimedGraph timed = timed_exact_graph({.net = net, .budget = kBudget});
+        const TimedGraph classes = class_graph({.net = net, .budget = kBudget});
+        CHECK(classes.graph.size() == timed.graph.size());
+        CHECK(classes.graph.edges.items.size() == timed.graph.edges.items.size());
+        CHECK(classes.graph.exact);
+        CHECK(classes.graph.over);
+        for (std::uint32_t s = 0; s < classes.graph.size(); ++s) {
+            std::string trouble;
+            CHECK_MESSAGE(classes.script(classes.path_to(s), &trouble).has_value(), trouble);
+        }
+    }
+}
+
+TEST_CASE(
+    "two tokens race: the one of 1 .. 3 ms may win, tie with and lose to that of 2 .. 4 ms "
+    "[oracle]") {
+    Maker m;
+    m.place("A", 1, net::between(1 * kMs, 3 * kMs));
+    m.place("B", 1, net::between(2 * kMs, 4 * kMs));
+    m.t("a", {"A", "unless ready B"}, {"Afirst"});
+    m.t("b", {"B", "unless ready A"}, {"Bfirst"});
+    m.t("both", {"A", "B"}, {"Both"});
+    const net::Net net = m.net();
+    const std::vector<Formula> atoms = {Formula::marked(m.p("Afirst")),
+                                        Formula::marked(m.p("Bfirst")),
+                                        Formula::marked(m.p("Both"))};
+    const TimedGraph g = class_graph({.net = net, .atoms = atoms, .budget = kBudget});
+    for (std::uint32_t a = 0; a < 3; ++a) {
+        std::uint32_t found = 0;
+        for (std::uint32_t s = 0; s < g.graph.size(); ++s) {
+            if (g.graph.atoms.must_hold(s, a)) {
+                ++found;
+                std::string trouble;
+                const auto script = g.script(g.path_to(s), &trouble);
+                CHECK_MESSAGE(script.has_value(), trouble);
+            }
+        }
+        CHECK(found > 0);
+    }
+    // A never wins when it lasts longer than B in every case.
+    m.place("A").duration = net::between(5 * kMs, 6 * kMs);
+    const net::Net late = m.net();
+    const TimedGraph h = class_graph({.net = late, .atoms = atoms, .budget = kBudget});
+    for (std::uint32_t s = 0; s < h.graph.size(); ++s) {
+        CHECK_FALSE(h.graph.atoms.may_hold(s, 2));
+    }
+}
+
+TEST_CASE("a chain of three takes the sum of its ends [law]") {
+    Maker m;
+    m.place("A", 1, net::between(1 * kMs, 3 * kMs));
+    m.place("B", 0, net::between(2 * kMs, 5 * kMs));
+    m.place("C", 0, net::between(4 * kMs, 4 * kMs));
+    m.t("ab", {"A"}, {"B"});
+    m.t("bc", {"B"}, {"C"});
+    m.t("cd", {"C"}, {"D"});
+    const net::Net net = m.net();
+    const auto e = extreme_times({.net = net, .budget = kBudget}, Formula::marked(m.p("D")));
+    REQUIRE(e.has_value());
+    CHECK(e->reachable);
+    CHECK_FALSE(e->avoidable);
+    CHECK(e->shortest == 7 * kMs);
+    CHECK(e->longest == 12 * kMs);
+}
+
+TEST_CASE("waiting for both of two takes the later of each end [law]") {
+    Maker m;
+    m.place("A", 1, net::between(1 * kMs, 9 * kMs));
+    m.place("B", 1, net::between(3 * kMs, 5 * kMs));
+    m.t("both", {"A", "B"}, {"D"});
+    const net::Net net = m.net();
+    const auto e = extreme_times({.net = net, .budget = kBudget}, Formula::marked(m.p("D")));
+    REQUIRE(e.has_value());
+    CHECK(e->shortest == 3 * kMs);
+    CHECK(e->longest == 9 * kMs);
+}
+
+TEST_CASE("a loop that may be left or not has a shortest time and no longest [law]") {
+    Maker m;
+    m.place("A", 1, net::between(2 * kMs, 3 * kMs));
+    m.t("again", {"A"}, {"A"});
+    m.t("out", {"A"}, {"D"});
+    const net::Net net = m.net();
+    const auto e = extreme_times({.net = net, .budget = kBudget}, Formula::marked(m.p("D")));
+    REQUIRE(e.has_value());
+    CHECK(e->avoidable);
+    CHECK(e->shortest == 2 * kMs);
+    CHECK(e->longest == SimTime::never().ticks);
+}
+
+}  // namespace
