@@ -188,7 +188,8 @@ inline Predicate small_predicate(Chance& chance, const PlainNet& net, int depth 
     std::map<std::uint32_t, std::int64_t> terms;
     const std::uint32_t count = 1 + chance.below(3);
     for (std::uint32_t i = 0; i < count; ++i) {
-        terms[chance.below(net.place_count())] = chance.one_in(4) ? -1 : 1 + chance.below(2);
+        terms[chance.below(net.place_count())] =
+            chance.one_in(4) ? std::int64_t{-1} : 1 + chance.below(2);
     }
     for (const auto& [p, f] : terms) {
         sum.terms.push_back({p, f});

@@ -15,7 +15,8 @@ namespace puppetri::proof {
 
 struct Components {
     std::vector<std::uint32_t> of_place, of_transition;  // the number of its component
-    std::uint32_t count = 0;                             // numbered by their first places
+    std::vector<std::uint32_t> of_datum, of_event;       // of drafts only
+    std::uint32_t count = 0;
 };
 
 // Connected by arcs of any kind. A net with levels is one component: a level blocks all lower ones,

@@ -22,11 +22,11 @@ struct BoundednessAnswer {
     std::vector<std::uint32_t> prefix, pump;  // transitions
 };
 
-// First the structural test (some y > 0 with y C <= 0: bounded from any marking), then the tree of
-// Karp and Miller, depth first. With inhibitors the growing part is accepted only if no inhibitor
-// tests a place that it changes, and levels are ignored for "bounded" only: with levels nothing is
-// called unbounded.
-// Source  Karp, Miller: Parallel program schemata, JCSS 3, 1969; Murata 1989, section V.
+// First the structural test (some y > 0 with y C <= 0: bounded from any marking), then depth-first
+// search for a marking that covers an ancestor. With inhibitors a pump counts only if no inhibitor
+// of its transitions tests a place that it changes; with levels nothing is called unbounded. Source
+// Karp, Miller: Parallel program schemata, JCSS 3, 1969 (unbounded iff some marking covers an
+//         ancestor strictly); Murata 1989, section VI (structural boundedness).
 BoundednessAnswer boundedness(const PlainNet& net, const Budget& budget);
 
 }  // namespace puppetri::proof

@@ -19,7 +19,8 @@ namespace puppetri::proof {
 // these test, and so on. Reachable markings seen through `places` are the same.
 SubNet slice(const PlainNet& net, std::span<const std::uint32_t> places);
 
-// What a rule speaks of.
+// What a rule speaks of. Atoms that only the stage knows (phases, holders) are not in it: who knows
+// the places behind them adds these. Slices and components leave out rules that have such atoms.
 struct SliceRoots {
     std::vector<std::uint32_t> places, transitions, data, events;
 };
@@ -30,7 +31,9 @@ SliceRoots roots_of(const net::Rule& rule);
 // Needs   a lowered draft (net::lower).
 struct DraftSlice {
     net::NetDraft draft;
-    std::vector<std::uint32_t> places, transitions;  // of the slice -> of the whole
+    std::vector<std::uint32_t> places, transitions, rules;  // of the slice -> of the whole
+    // A final marking speaks of more than the slice has: what is final is not known in it.
+    bool finals_left_out = false;
 };
 DraftSlice slice(const net::NetDraft& draft, const SliceRoots& roots);
 // The same for one component.

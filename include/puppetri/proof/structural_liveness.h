@@ -3,9 +3,11 @@
 // Each theorem's preconditions are checked here; where none applies the answer is "not known".
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "puppetri/net/draft.h"
 #include "puppetri/net/net.h"
 #include "puppetri/proof/budget.h"
 #include "puppetri/proof/plain_net.h"
@@ -15,44 +17,62 @@ namespace puppetri::proof {
 
 struct StructuralLiveness {
     bool live = false;           // every transition stays fireable again and again
-    bool not_live = false;       // some transition can get dead (theorem, both directions)
+    bool not_live = false;       // some transition can get dead
     bool deadlock_free = false;  // no reachable marking is dead
+    bool bounded = false;        // said only together with `live`
     const char* theorem = "";    // what it rests on, with its source
-    PlaceSet siphon;             // of not_live: one that can be emptied; of marked graphs a circuit
+    PlaceSet unmarked;  // of not_live: the circuit's places or the siphon that can be empty
 };
 
 // For the plain untimed net. Applies only without inhibitors, levels and optional transitions, on
-// ordinary nets:
-//   marked graphs      live iff every circuit has a token (Commoner, Holt, Even, Pnueli 1971)
-//   state machines     live iff strongly connected and marked, per component
-//   free choice nets   (extended) live iff every siphon contains a marked trap (Commoner's theorem;
-//                      Hack 1972; Desel, Esparza: Free Choice Petri Nets, 1995, theorem 4.21, 4.27)
-//   any ordinary net   Commoner's property: deadlock-free (Desel, Esparza, proposition 4.10 on
-//                      ordinary nets)
-// Independent components are judged one by one: live if all are, deadlock-free if one is.
+// ordinary nets, to each independent component:
+//   marked graph          live iff every circuit has a token (Commoner, Holt, Even, Pnueli, JCSS 5,
+//                         1971); bounded if strongly connected
+//   extended free choice  well-formed iff covered by positive flows of places and of transitions
+//   and
+//                         rank C = clusters - 1 (rank theorem: Desel, Esparza: Free Choice Petri
+//                         Nets, 1995, chapter 6); then its minimal siphons are traps too, and it is
+//                         live and bounded iff each of them is marked (chapter 5)
+//   extended free choice  live iff every siphon contains a marked trap (Commoner's theorem: Hack
+//                         1972; chapter 4 there)
+//   any                   every siphon contains a marked trap: deadlock-free (chapter 4: the
+//   unmarked
+//                         places of a dead marking are a siphon)
+// The whole is live if all components are, deadlock-free if one is.
+// Cost  polynomial but for the last two, which list minimal siphons within the budget.
 StructuralLiveness structural_liveness(const PlainNet& net, const Budget& budget);
 
-// The same for a net with durations, choosers and priorities: from every reachable state each
-// transition can fire again. Theorem (docs/proof.md): in a live and bounded extended free choice
-// net every infinite run that always chooses the transition of its cluster that points to t fires
-// t again and again (Desel, Esparza 1995, chapter 6, pointing allocations). Time, and priorities
-// between clusters, only order the firings of different clusters; within a cluster every choice
-// remains possible if all its transitions have equal priority, no guard, event or delay, and draw
-// their ties with odds above zero. Durations must be finite.
+// The same for a net with durations, chance and priorities: in every reachable state each
+// transition can fire again later. The reason: in a bounded, strongly connected, extended free
+// choice net every endless run that keeps choosing, in each cluster, the transition that points
+// towards t fires t again and again (after Desel, Esparza 1995, chapter 6, pointing allocations;
+// the proof, which asks nothing of the run but to be endless, is in src/proof/timed_liveness.cpp).
+// The members of a cluster need the same tokens, so they become fireable at the same instant, and
+// which one fires is a draw; time, and priorities between clusters, only order the firings of
+// different clusters. Runs are endless since durations end and the untimed net, of which the timed
+// one is a part, has no deadlock. Needs, checked here: structural_liveness live and bounded; within
+// a cluster equal priority, no delay unless alone; nowhere guards, events, assignments, computed
+// odds, `now`, `while` or `unless` on timed places; patterns that fit every token; durations that
+// are constant, `auto`, distributed or `as` those.
 struct TimedLiveness {
     bool live = false;
-    std::string theorem;  // or why it does not apply
+    std::string reason;  // the theorem; or why it does not apply
+    // The run may stop with a fault unless these rules hold too.
+    bool needs_time_goes_on = false;  // not each circuit takes time
+    bool needs_clean_ends = false;    // some module must be clean when it ends
 };
 TimedLiveness timed_liveness(const net::Net& net, const Budget& budget);
 
 // Tokens that carry an actor or a prop are conserved one by one: each firing hands every identity
-// that it takes from `places` to exactly one token that it gives to them, and makes none.
+// that it takes from `places` to exactly one token that it gives to them, and makes none. Then each
+// identity of an initial token is for ever in exactly one of the places.
+// Needs  a lowered draft (net::lower); `attribute[i]`: which attribute of places[i] is the
+// identity.
 struct IdentityAnswer {
     bool conserved = false;
     std::string reason;  // if not: the transition and what it does
 };
-// `attribute[i]`: which attribute of places[i] holds the identity.
-IdentityAnswer conserves_identity(const net::Net& net, std::span<const std::uint32_t> places,
+IdentityAnswer conserves_identity(const net::NetDraft& draft, std::span<const std::uint32_t> places,
                                   std::span<const std::uint32_t> attribute);
 
 }  // namespace puppetri::proof

@@ -27,27 +27,30 @@ struct MonitorPlace {
 struct SupervisorAnswer {
     bool possible = false;
     MonitorPlace place;
+    LinearSum sum;  // what is kept at most `limit`: what was asked for, perhaps with more places
+    std::int64_t limit = 0;
     // If not: the sum is above the limit already, or a transition that nobody may hold back makes
     // it grow.
     std::string reason;
     std::uint32_t transition = ~std::uint32_t{0};
 };
 
-// Keeps sum <= limit for ever by a place with sum + tokens(place) = limit: row -sum C, initial
-// limit - sum m0. The least restrictive such control when all transitions may be held back.
-// `uncontrollable` per transition (events and movements decide): the place may not take from them.
-// Where it would, the constraint is strengthened if a place whose tokens lead there can be counted
-// in (row operations on the uncontrollable part of C), else the answer is no.
+// Keeps sum <= limit for ever by a place with sum + tokens(place) = limit: its changes are -sum C,
+// its initial tokens limit - sum m0. The least restrictive such control when all transitions may be
+// held back. `uncontrollable` per transition (events and movements decide): the place may not take
+// from these. Where it would, places are added to the sum from which such a transition takes, as
+// long as that makes it harmless (the sum stays an upper bound of what was asked for); that forbids
+// more than necessary, and where it does not end the answer is no.
 // The place keeps the bound; it may make new deadlocks: prove again.
 // Source  Moody, Antsaklis: Supervisory Control of Discrete Event Systems Using Petri Nets, 1998,
-//         chapter 4 (invariant-based) and 5 (uncontrollable transitions); Yamalidou et al.,
-//         Automatica 32, 1996.
+//         chapter 3 (place invariants) and 4 (uncontrollable transitions); Yamalidou, Moody,
+//         Lemmon, Antsaklis, Automatica 32, 1996.
 SupervisorAnswer supervise(const PlainNet& net, const LinearSum& sum, std::int64_t limit,
                            std::span<const std::uint8_t> uncontrollable = {});
 
 // Keeps a siphon from being emptied: at least one token stays in it (ordinary nets).
-// Source  Ezpeleta, Colom, Martinez: A Petri net based deadlock prevention policy for FMS, IEEE
-//         TRA 11, 1995; Moody, Antsaklis 1998, chapter 6.
+// Source  Ezpeleta, Colom, Martinez: A Petri net based deadlock prevention policy for flexible
+//         manufacturing systems, IEEE TRA 11, 1995; Moody, Antsaklis 1998, chapter 5.
 SupervisorAnswer monitor_siphon(const PlainNet& net, const PlaceSet& siphon,
                                 std::span<const std::uint8_t> uncontrollable = {});
 

@@ -35,8 +35,9 @@ Symmetry interchangeable_instances(const PlainNet& net,
 // The marking's representative: in each group the instances' rows of tokens in ascending order.
 void make_canonical(const Symmetry& symmetry, std::span<std::uint32_t> marking);
 
-// The groups whose swaps leave the predicate's meaning as it is (checked on its atoms: a swap maps
-// each conjunction and disjunction onto itself).
+// The groups whose swaps leave the predicate as it is, up to the order of conjunctions and
+// disjunctions. A predicate that asks for the enabledness of transitions respects none, except that
+// whether anything can fire at all respects every symmetry: ask that without this function.
 Symmetry respecting(const Symmetry& symmetry, const Predicate& predicate);
 
 }  // namespace puppetri::proof
