@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "foot_path.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "living.h"
@@ -123,6 +124,18 @@ void FootPath::swing(double begin_s, const Transform& world_from_path, Curve3 an
                          std::move(toe_bend)});
 }
 
+Curve1 roll_flat(Motion1 pitch, double at_ease_s) {
+    const double p = pitch.position, v = pitch.velocity;
+    if (std::fabs(p) < 1e-9 && std::fabs(v) < 1e-6) {
+        return Curve1(std::vector<Key1>{{0, {}}});
+    }
+    const double R = v * p < 0 ? clamp(-3.2 * p / v, 0.02, 1.25 * at_ease_s) : at_ease_s;
+    const double c1 = -(v * R + 3 * p) / (R * R * R * R);
+    const double c0 = p / (R * R * R) - c1 * R;
+    pitch.acceleration = 6 * R * c0 + 12 * R * R * c1;
+    return Curve1(std::vector<Key1>{{0, pitch}, {R, {}}});
+}
+
 double drop_below_ankle(const figure::Figure& figure, Side side, double pitch_rad,
                         double toe_bend_rad) {
     const figure::Leg& leg = figure.legs[index_of(side)];
@@ -131,6 +144,44 @@ double drop_below_ankle(const figure::Figure& figure, Side side, double pitch_ra
     const double ball = rotate(foot, leg.toes_foot + rotate(toes, leg.ball_toes)).y;
     const double tip = rotate(foot, leg.toes_foot + rotate(toes, leg.toe_tip_toes)).y;
     return -std::fmin(heel, std::fmin(ball, tip));
+}
+
+Curve1 clear_of_floor(const figure::Figure& figure, Side side, Key1 from,
+                      std::vector<Waypoint1> inner, Key1 to, const Curve1& pitch,
+                      const Curve1& toe_bend, double floor_y) {
+    constexpr int kSamples = 24, kRounds = 4;
+    constexpr double kSunk_m = 0.0005, kLift_m = 0.006;
+    const double d = to.t_s - from.t_s;
+    Curve1 height = minimum_jerk(from, inner, to);
+    for (int round = 0; round < kRounds; ++round) {
+        double worst = -kSunk_m, at_s = 0;
+        for (int i = 1; i < kSamples; ++i) {
+            const double t = from.t_s + d * i / kSamples;
+            const double clearance =
+                height.at(t).position - floor_y -
+                drop_below_ankle(figure, side, pitch.at(t).position, toe_bend.at(t).position);
+            if (clearance < worst) {
+                worst = clearance;
+                at_s = t;
+            }
+        }
+        if (at_s == 0) {
+            break;
+        }
+        const double wanted = height.at(at_s).position - worst + kLift_m;
+        auto near = std::find_if(inner.begin(), inner.end(), [&](const Waypoint1& w) {
+            return std::fabs(w.t_s - at_s) < 0.08 * d;
+        });
+        if (near != inner.end()) {
+            near->position += kLift_m - worst;
+        } else {
+            inner.insert(std::find_if(inner.begin(), inner.end(),
+                                      [&](const Waypoint1& w) { return w.t_s > at_s; }),
+                         {at_s, wanted});
+        }
+        height = minimum_jerk(from, inner, to);
+    }
+    return height;
 }
 
 const FootPath::Segment& FootPath::segment_at(double t_s) const {
@@ -203,7 +254,7 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
                 kRollFlat_s +
                 (heel_up ? 0.45 * std::fmin(1, length(context.rate.pelvis_velocity_world)) : 0);
             landing.flat_s = rolls && !heel_up ? kRollFlat_s : 0;
-            landing.path.set_pitch(minimum_jerk({0, now.pitch}, {}, {roll_s, {}}));
+            landing.path.set_pitch(roll_flat(now.pitch, roll_s));
         }
         return landing;
     }
@@ -215,13 +266,14 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
     const Vec3 p = now.ankle.position, v = now.ankle.velocity;
     const double low = goal.y - figure.ankle_height_m + 0.012 +
                        drop_below_ankle(figure, side, pitch.at(0.6 * t).position, 0);
-    Curve3 ankle{
-        minimum_jerk({0, {p.x, v.x, 0}}, {}, {t, {goal.x, 0, 0}}),
-        minimum_jerk({0, {p.y, v.y, 0}}, {{0.6 * t, std::fmax(low, lerp(p.y, goal.y, 0.75))}},
-                     {t, {goal.y, 0, 0}}),
-        minimum_jerk({0, {p.z, v.z, 0}}, {}, {t, {goal.z, 0, 0}})};
+    const Curve1 toes = minimum_jerk({0, now.toe_bend}, {}, {t, {}});
+    Curve3 ankle{minimum_jerk({0, {p.x, v.x, 0}}, {}, {t, {goal.x, 0, 0}}),
+                 clear_of_floor(figure, side, {0, {p.y, v.y, 0}},
+                                {{0.6 * t, std::fmax(low, lerp(p.y, goal.y, 0.75))}},
+                                {t, {goal.y, 0, 0}}, pitch, toes, floor_y),
+                 minimum_jerk({0, {p.z, v.z, 0}}, {}, {t, {goal.z, 0, 0}})};
     landing.path.swing(0, {}, std::move(ankle), minimum_jerk({0, now.yaw}, {}, {t, {yaw, 0, 0}}),
-                       minimum_jerk({0, now.toe_bend}, {}, {t, {}}));
+                       toes);
     landing.path.stand(t, landing.print);
     landing.path.set_pitch(pitch);
     return landing;
@@ -231,30 +283,44 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
 // in [0, 2 w], which joins y below and h above with a continuous slope. Across the floor, beyond a
 // = 0.70 of the leg the distance d becomes a + b (1 - exp(-(d - a) / b)), never more than a + b =
 // 0.85 of the leg.
-void keep_reach(const figure::Figure& figure, std::array<bool, 2> stands, double since_start_s,
-                Controls& c) {
+double KeepReach::highest(std::size_t side, Controls& c) const {
     constexpr double kReach = 0.9990;
+    const Vec3 hip = rotate(c.pelvis.rotation_world, figure_->legs[side].hip_pelvis);
+    Vec3 d = c.pelvis.position_world + hip - c.legs[side].ankle_world;
+    const double level = std::sqrt(d.x * d.x + d.z * d.z), a = 0.70 * figure_->leg_m,
+                 b = 0.15 * figure_->leg_m;
+    if (level > a) {
+        const double near = (a + b * (1 - puppetri::exp(-(level - a) / b))) / level;
+        c.pelvis.position_world = c.pelvis.position_world - Vec3{d.x, 0, d.z} * (1 - near);
+        d = {d.x * near, d.y, d.z * near};
+    }
+    const double r = kReach * figure_->leg_m;
+    return c.legs[side].ankle_world.y - hip.y + std::sqrt(r * r - d.x * d.x - d.z * d.z);
+}
+
+KeepReach::KeepReach(const figure::Figure& figure, std::array<bool, 2> stands, const Controls& now)
+    : figure_(&figure) {
+    for (std::size_t side = 0; side < 2; ++side) {
+        Controls c = now;
+        if (stands[side]) {
+            missing_m_[side] = std::fmax(0, now.pelvis.position_world.y - highest(side, c));
+        }
+    }
+}
+
+void KeepReach::apply(std::array<bool, 2> stands, double since_start_s, Controls& c) const {
+    constexpr double kLetsGo_s = 0.25;
     const double w = 1e-7 + 0.0009 * smooth_rise(since_start_s, 0.1);
+    const double missing = 1 - smooth_rise(since_start_s, kLetsGo_s);
     for (std::size_t side = 0; side < 2; ++side) {
         if (!stands[side]) {
             continue;
         }
-        const Vec3 hip = rotate(c.pelvis.rotation_world, figure.legs[side].hip_pelvis);
-        Vec3 d = c.pelvis.position_world + hip - c.legs[side].ankle_world;
-        const double level = std::sqrt(d.x * d.x + d.z * d.z), a = 0.70 * figure.leg_m,
-                     b = 0.15 * figure.leg_m;
-        if (level > a) {
-            const double near = (a + b * (1 - puppetri::exp(-(level - a) / b))) / level;
-            c.pelvis.position_world = c.pelvis.position_world - Vec3{d.x, 0, d.z} * (1 - near);
-            d = {d.x * near, d.y, d.z * near};
-        }
-        const double r = kReach * figure.leg_m;
-        const double highest =
-            c.legs[side].ankle_world.y - hip.y + std::sqrt(r * r - d.x * d.x - d.z * d.z);
-        const double over = c.pelvis.position_world.y - (highest - w);
+        const double most = highest(side, c) + missing_m_[side] * missing;
+        const double over = c.pelvis.position_world.y - (most - w);
         if (over > 0) {
             c.pelvis.position_world.y =
-                over < 2 * w ? c.pelvis.position_world.y - over * over / (4 * w) : highest;
+                over < 2 * w ? c.pelvis.position_world.y - over * over / (4 * w) : most;
         }
     }
 }

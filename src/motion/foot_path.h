@@ -38,6 +38,11 @@ Footprint footprint_at(const figure::Figure& figure, Side side, Vec3 ankle_flat,
 Motion3 ankle_on_print(const figure::Figure& figure, Side side, const Footprint& print,
                        Motion1 pitch);
 
+// Brings a planted foot flat in about at_ease_s: pitch(t) = (R - t)^3 (c0 + c1 (R - t)) from
+// position and velocity, so that it ends with velocity and acceleration 0. One that already rolls
+// down takes R = 3.2 p / -v, nearly a pure cube, which never changes sign.
+Curve1 roll_flat(Motion1 pitch, double at_ease_s);
+
 class FootPath {
  public:
     // Stands on the print from begin_s on.
@@ -72,6 +77,13 @@ class FootPath {
 double drop_below_ankle(const figure::Figure& figure, Side side, double pitch_rad,
                         double toe_bend_rad);
 
+// The height of the ankle of a foot in the air: the smoothest curve through the points, with more
+// points where a part of the foot would go into the floor. For feet that begin anywhere; a few
+// microseconds.
+Curve1 clear_of_floor(const figure::Figure& figure, Side side, Key1 from,
+                      std::vector<Waypoint1> inner, Key1 to, const Curve1& pitch,
+                      const Curve1& toe_bend, double floor_y);
+
 // A path that puts the foot down (or rolls it flat where it stands) and leaves it there. A foot in
 // the air goes where it makes the figure stand: so that the pelvis, which needs a moment to stop,
 // comes to rest between the feet.
@@ -84,10 +96,22 @@ struct Landing {
 Landing put_down(const figure::Figure& figure, const MotionContext& context, Side side);
 
 // Lowers the pelvis where a standing leg would not reach its foot, and draws it near where even
-// that does not help; smooth, and nothing where the legs reach easily. `stands`, by side, says
-// which feet are on the floor.
-void keep_reach(const figure::Figure& figure, std::array<bool, 2> stands, double since_start_s,
-                Controls& controls);
+// that does not help; smooth, and nothing where the legs reach easily.
+class KeepReach {
+ public:
+    KeepReach() = default;
+    // What is out of reach where a movement starts it lets go by and by. `stands`, by side, says
+    // which feet are on the floor.
+    KeepReach(const figure::Figure& figure, std::array<bool, 2> stands, const Controls& now);
+    void apply(std::array<bool, 2> stands, double since_start_s, Controls& controls) const;
+
+ private:
+    // The pelvis's height above which the leg does not reach; draws the pelvis near first.
+    double highest(std::size_t side, Controls& controls) const;
+
+    const figure::Figure* figure_ = nullptr;
+    std::array<double, 2> missing_m_{};
+};
 
 // The height of the floor: that of the lower foot while it stands; 0 while the figure flies.
 double floor_under(const figure::Figure& figure, const MotionContext& context);

@@ -40,6 +40,8 @@ class Step final : public Movement {
         duration = context.duration.ticks > 0 ? context.duration
                                               : whole_milliseconds(step_duration_s(spec));
         tell_phases();
+        reach_ = KeepReach(figure_, {plan_.feet[0].stands_at(0), plan_.feet[1].stands_at(0)},
+                           context.now);
         join_ = InertialFigure(context, own_at(0), own_at(InertialFigure::kMoment_s),
                                std::fmax(0.8 * plan_.duration_s, 0.33));
     }
@@ -55,7 +57,7 @@ class Step final : public Movement {
                 lerp(c.pelvis.position_world, plan_.world_from_path * plan_.rest_path, settled);
             living_.add(t_s - T, smooth_rise(t_s - T, 1.5), c);
         }
-        keep_reach(figure_, {plan_.feet[0].stands_at(t), plan_.feet[1].stands_at(t)}, t, c);
+        reach_.apply({plan_.feet[0].stands_at(t), plan_.feet[1].stands_at(t)}, t, c);
         copy_limbs(limbs, c, out);
     }
 
@@ -153,6 +155,7 @@ class Step final : public Movement {
     StepPlan plan_;
     Living living_;
     InertialFigure join_;
+    KeepReach reach_;
 };
 
 }  // namespace

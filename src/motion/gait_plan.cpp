@@ -43,6 +43,7 @@ constexpr double kSlips = 0.9981, kStanding = 0.9969;
 constexpr double kEasySwing_s = 0.32, kHurry_s = 0.035, kEasy_m_s2 = 3.2;
 constexpr double kMostLag_m = 0.09, kMostSlowLead_m = 0.04, kMostRestLag_m = 0.09;
 constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down
+constexpr double kRollFlat_s = 0.2;      // of the foot that just landed
 constexpr double kCatch_s = 0.16;        // to put down a foot that should already stand
 
 class Planner {
@@ -278,7 +279,9 @@ class Planner {
         double flat_s = 0;
         if (support_.planted) {
             foot.stand(0, support_print_);
-            flat_s = settle(support_.pitch, keys);
+            const Curve1 rolls = roll_flat(support_.pitch, kRollFlat_s);
+            keys = rolls.keys();
+            flat_s = rolls.end_s();
         } else {
             flat_s =
                 land(foot, support_side_, support_, support_print_, plan_.support_strike_s, keys);
@@ -308,27 +311,6 @@ class Planner {
         foot.set_pitch(Curve1(std::move(keys)));
     }
 
-    // Keys that bring a planted foot flat; the remaining way is a quartic that ends with velocity
-    // and acceleration 0.
-    double settle(Motion1 pitch, std::vector<Key1>& keys) {
-        if (std::fabs(pitch.position) < 1e-9 && std::fabs(pitch.velocity) < 1e-6) {
-            keys.push_back({0, {}});
-            return 0;
-        }
-        // pitch(t) = (R - t)^3 (c0 + c1 (R - t)): from position and velocity; the acceleration
-        // follows.
-        // R = 3.2 p / -v makes it nearly a pure cube, which never changes sign.
-        const double R = pitch.velocity * pitch.position < 0
-                             ? clamp(-3.2 * pitch.position / pitch.velocity, 0.02, 0.25)
-                             : 0.2;
-        const double c1 = -(pitch.velocity * R + 3 * pitch.position) / (R * R * R * R);
-        const double c0 = pitch.position / (R * R * R) - c1 * R;
-        pitch.acceleration = 6 * R * c0 + 12 * R * R * c1;
-        keys.push_back({0, pitch});
-        keys.push_back({R, {}});
-        return R;
-    }
-
     // A foot in the air comes down on the print at strike_s.
     double land(FootPath& foot, Side side, const FootState& now, const Footprint& print,
                 double strike_s, std::vector<Key1>& keys) {
@@ -337,11 +319,13 @@ class Planner {
         keys.push_back({t, {}});
         const Motion3 from = to_path(now.ankle), to = to_path(ankle_on_print(f_, side, print, {}));
         auto curve = [t](Motion1 a, Motion1 b) { return minimum_jerk({0, a}, {}, {t, b}); };
-        const Curve3 ankle{curve({from.position.x, from.velocity.x, 0}, {to.position.x, 0, 0}),
-                           curve({from.position.y, from.velocity.y, 0}, {to.position.y, 0, 0}),
-                           curve({from.position.z, from.velocity.z, 0}, {to.position.z, 0, 0})};
-        foot.swing(0, plan_.world_from_path, ankle, curve(now.yaw, {print.yaw_rad, 0, 0}),
-                   curve(now.toe_bend, {}));
+        const Curve1 toes = curve(now.toe_bend, {});
+        const Curve3 ankle{
+            curve({from.position.x, from.velocity.x, 0}, {to.position.x, 0, 0}),
+            clear_of_floor(f_, side, {0, {from.position.y, from.velocity.y, 0}}, {},
+                           {t, {to.position.y, 0, 0}}, curve(now.pitch, {}), toes, 0),
+            curve({from.position.z, from.velocity.z, 0}, {to.position.z, 0, 0})};
+        foot.swing(0, plan_.world_from_path, ankle, curve(now.yaw, {print.yaw_rad, 0, 0}), toes);
         foot.stand(t, print);
         return t;
     }
@@ -403,7 +387,9 @@ class Planner {
         }
         const double peak =
             first_ ? 0.72 * swing_pitch_ : std::fmin(swing_pitch_, lift_to - radians(2));
-        way.push_back({lift + (first_ ? 0.48 : last_ ? 0.3 : 0.24) * d, peak});
+        if (planted) {  // one that is in the air already is on its way down
+            way.push_back({lift + (first_ ? 0.48 : last_ ? 0.3 : 0.24) * d, peak});
+        }
         way.push_back({lift + 0.62 * d, 0.2 * peak});
         way.push_back({lift + 0.86 * d, 1.05 * strike_to});
         Key1 end{strike, {}};
@@ -443,13 +429,14 @@ class Planner {
         const Curve3 ankle{
             minimum_jerk({lift, {from.position.x, from.velocity.x, from.acceleration.x}}, {},
                          {strike, {to.position.x, to.velocity.x, to.acceleration.x}}),
-            minimum_jerk({lift, {from.position.y, from.velocity.y, from.acceleration.y}},
-                         {height_at(whole_   ? 0.25
-                                    : first_ ? 0.38
-                                             : 0.3,
-                                    kClearance_m),
-                          height_at(0.5, kClearance_m), height_at(0.78, 0.8 * kClearance_m)},
-                         {strike, {to.position.y, to.velocity.y, to.acceleration.y}}),
+            clear_of_floor(
+                f_, side, {lift, {from.position.y, from.velocity.y, from.acceleration.y}},
+                {height_at(whole_   ? 0.25
+                           : first_ ? 0.38
+                                    : 0.3,
+                           kClearance_m),
+                 height_at(0.5, kClearance_m), height_at(0.78, 0.8 * kClearance_m)},
+                {strike, {to.position.y, to.velocity.y, to.acceleration.y}}, pitch, toes, 0),
             minimum_jerk({lift, {from.position.z, from.velocity.z, from.acceleration.z}}, {},
                          {strike, {to.position.z, to.velocity.z, to.acceleration.z}})};
         foot.swing(lift, plan_.world_from_path, ankle,

@@ -92,10 +92,14 @@ class Idle final : public Movement {
         living_.add(0, 1, own);
         living_.add(InertialFigure::kMoment_s, 1, later);
         constexpr double kSettle_s = 0.7;
+        // Who is cut in full stride stops before the legs are too short.
+        const double speed = length(context.rate.pelvis_velocity_world);
+        const double stops_s = lerp(kSettle_s, 0.42, clamp((speed - 0.3) / 0.5, 0, 1));
         const Vec3 velocity = (later.pelvis.position_world - own.pelvis.position_world) *
                               (1 / InertialFigure::kMoment_s);
         pelvis_ = {context.now.pelvis.position_world - own.pelvis.position_world,
-                   context.rate.pelvis_velocity_world - velocity, kSettle_s};
+                   context.rate.pelvis_velocity_world - velocity, stops_s};
+        reach_ = KeepReach(figure_, {feet_[0].stands_at(0), feet_[1].stands_at(0)}, context.now);
         join_ = InertialFigure(context, own, later, kSettle_s);
     }
 
@@ -107,7 +111,7 @@ class Idle final : public Movement {
             c.legs[i] = feet_[i].at(t_s);
         }
         join_.apply(t_s, c);
-        keep_reach(figure_, {feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
+        reach_.apply({feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
         copy_limbs(limbs, c, out);
     }
 
@@ -134,6 +138,7 @@ class Idle final : public Movement {
     std::array<FootPath, 2> feet_;
     InertialOffset3 pelvis_;
     InertialFigure join_;
+    KeepReach reach_;
 };
 
 }  // namespace

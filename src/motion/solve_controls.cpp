@@ -24,6 +24,10 @@ Vec3 elbow_direction(double s, Vec3 arm_direction) {
     return rotate(shortest_arc(base, arm_direction, {0, 0, 1}), behind - base * dot(base, behind));
 }
 
+// Raising the heel by an angle lets the shank lean by about a third of it: six rounds leave a
+// thousandth.
+constexpr int kHeelRounds = 6;
+
 class Solver {
  public:
     Solver(const Figure& figure, const Controls& controls, Pose& out)
@@ -61,33 +65,67 @@ class Solver {
         return inside;
     }
 
+    // An ankle that would have to bend farther than it can raises the heel: the foot
+    // turns about the joint of its toes, which stay where they are (and before that, down about its
+    // heel). So no toes go into the floor under hips that are too low.
     void solve_leg(int side) {
         const figure::Leg& leg = f_.legs[side];
         const LegControl& control = c_.legs[side];
         const Transform pelvis_from_world = inverse(world_from_pelvis_);
-        const Transform goal =
-            pelvis_from_world * Transform{control.foot_rotation_world, control.ankle_world};
         // The knee points where the foot does, a little held back by the pelvis.
-        Vec3 toes_world = rotate(control.foot_rotation_world, {0, 0, 1});
-        toes_world = normalized(Vec3{toes_world.x, 0, toes_world.z},
-                                rotate(c_.pelvis.rotation_world, {0, 0, 1}));
-        const Vec3 pole = rotate(pelvis_from_world.rotation, toes_world) * 0.6 + Vec3{0, 0, 0.4};
-        const LimbResult limb = solve_limb(
-            {.start = leg.hip_pelvis,
-             .goal = goal,
-             .axis = {0, -1, 0},
-             .hinge = {1, 0, 0},
-             .swivel_zero = pole,
-             .swivel_rad = side == figure::kLeft ? -control.swivel_rad : control.swivel_rad,
-             .upper_m = leg.thigh_m,
-             .lower_m = leg.shank_m,
-             .soft = 0.998});
-        const Quat hip = set(leg.hip, limb.start_rotation);
-        const Quat knee = set(leg.knee, limb.middle_rotation);
-        set(leg.ankle, conjugate(hip * knee) * goal.rotation);
-        set(leg.toes, about_x(-control.toe_bend_rad));
+        Vec3 ahead_world = rotate(control.foot_rotation_world, {0, 0, 1});
+        ahead_world = normalized(Vec3{ahead_world.x, 0, ahead_world.z},
+                                 rotate(c_.pelvis.rotation_world, {0, 0, 1}));
+        const Vec3 pole = rotate(pelvis_from_world.rotation, ahead_world) * 0.6 + Vec3{0, 0, 0.4};
+        Transform foot{control.foot_rotation_world, control.ankle_world};
+        // Where the joint of the toes is once the sole is down: a foot on its heel comes down
+        // first.
+        const Vec3 heel_world = foot * leg.heel_foot;
+        const double pitch_up = rotate(control.foot_rotation_world, {0, 0, 1}).y;
+        const Vec3 toes_world = pitch_up > 0 ? heel_world + rotate(about_y(heading_of(ahead_world)),
+                                                                   leg.toes_foot - leg.heel_foot)
+                                             : foot * leg.toes_foot;
+        Quat hip, knee;
+        double turned_rad = 0;
+        for (int round = 0;; ++round) {
+            const Transform goal = pelvis_from_world * foot;
+            const LimbResult limb = solve_limb(
+                {.start = leg.hip_pelvis,
+                 .goal = goal,
+                 .axis = {0, -1, 0},
+                 .hinge = {1, 0, 0},
+                 .swivel_zero = pole,
+                 .swivel_rad = side == figure::kLeft ? -control.swivel_rad : control.swivel_rad,
+                 .upper_m = leg.thigh_m,
+                 .lower_m = leg.shank_m,
+                 .soft = 0.998});
+            hip = set(leg.hip, limb.start_rotation);
+            knee = set(leg.knee, limb.middle_rotation);
+            const Quat wanted = conjugate(hip * knee) * goal.rotation;
+            const Quat ankle = figure::clamp_to_limit(f_.limits[leg.ankle.value], wanted);
+            out_.parent_from_joint[leg.ankle.value].rotation = ankle;
+            if (ankle == wanted || round == kHeelRounds) {
+                break;
+            }
+            const Quat turned = normalized(world_from_pelvis_.rotation * hip * knee * ankle);
+            if (rotate(turned, {0, 0, 1}).y >= rotate(foot.rotation, {0, 0, 1}).y && round == 0) {
+                outcome_.clamped_rad =
+                    std::fmax(outcome_.clamped_rad, angle_between(ankle, wanted));
+                break;  // that would lower the heel, which a leg may be too short for
+            }
+            foot.rotation = turned;
+            foot.translation = rotate(turned, {0, 0, 1}).y > 0
+                                   ? heel_world - rotate(turned, leg.heel_foot)
+                                   : toes_world - rotate(turned, leg.toes_foot);
+            turned_rad = angle_between(foot.rotation, control.foot_rotation_world);
+        }
+        outcome_.clamped_rad = std::fmax(outcome_.clamped_rad, turned_rad);
+        const Quat toes = about_x(-control.toe_bend_rad);
+        set(leg.toes,
+            turned_rad == 0 ? toes : conjugate(foot.rotation) * control.foot_rotation_world * toes);
+        const Vec3 ankle_pelvis = pelvis_from_world * control.ankle_world;
         outcome_.leg_residual_m[side] =
-            length(goal.translation - leg.hip_pelvis -
+            length(ankle_pelvis - leg.hip_pelvis -
                    rotate(hip, Vec3{0, -leg.thigh_m, 0} + rotate(knee, {0, -leg.shank_m, 0})));
     }
 

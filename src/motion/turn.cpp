@@ -43,6 +43,7 @@ class Turn final : public Movement {
         T_ = std::fmax(duration.seconds(), 0.2);  // a net that allows less cuts the turn there
         plan_feet(context);
         plan_pelvis(context);
+        reach_ = KeepReach(figure_, {feet_[0].stands_at(0), feet_[1].stands_at(0)}, context.now);
         join_ = InertialFigure(context, own_at(0), own_at(InertialFigure::kMoment_s),
                                std::fmin(0.8 * T_, 0.6));
     }
@@ -53,7 +54,7 @@ class Turn final : public Movement {
         if (t_s > T_) {
             living_.add(t_s - T_, smooth_rise(t_s - T_, 1.5), c);
         }
-        keep_reach(figure_, {feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
+        reach_.apply({feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
         copy_limbs(limbs, c, out);
     }
 
@@ -170,16 +171,17 @@ class Turn final : public Movement {
         }
         pitch.push_back({s.begin_s, foot.pitch().at(s.begin_s)});
         pitch.push_back({s.end_s, {}});
-        const double middle = (s.begin_s + s.end_s) / 2, top = s.to.y + kClearance_m;
-        Curve3 ankle{
-            quick(s.begin_s, p.x, v.x, s.end_s, s.to.x),
-            minimum_jerk({s.begin_s, {p.y, v.y, 0}}, {{middle, std::fmax(top, (p.y + s.to.y) / 2)}},
-                         {s.end_s, {s.to.y, 0, 0}}),
-            quick(s.begin_s, p.z, v.z, s.end_s, s.to.z)};
         foot.set_pitch(Curve1(std::move(pitch)));
+        const Curve1 toes = minimum_jerk({s.begin_s, {bend, bend_rate, 0}}, {}, {s.end_s, {}});
+        const double middle = (s.begin_s + s.end_s) / 2, top = s.to.y + kClearance_m;
+        Curve3 ankle{quick(s.begin_s, p.x, v.x, s.end_s, s.to.x),
+                     clear_of_floor(figure_, s.side, {s.begin_s, {p.y, v.y, 0}},
+                                    {{middle, std::fmax(top, (p.y + s.to.y) / 2)}},
+                                    {s.end_s, {s.to.y, 0, 0}}, foot.pitch(), toes,
+                                    s.to.y - figure_.ankle_height_m),
+                     quick(s.begin_s, p.z, v.z, s.end_s, s.to.z)};
         foot.swing(s.begin_s, {}, std::move(ankle),
-                   quick(s.begin_s, s.yaw_from, 0, s.end_s, s.yaw_to),
-                   minimum_jerk({s.begin_s, {bend, bend_rate, 0}}, {}, {s.end_s, {}}));
+                   quick(s.begin_s, s.yaw_from, 0, s.end_s, s.yaw_to), toes);
         foot.stand(s.end_s, footprint_at(figure_, s.side, s.to, s.yaw_to));
     }
 
@@ -268,6 +270,7 @@ class Turn final : public Movement {
     Curve3 pelvis_;
     Curve1 yaw_;
     InertialFigure join_;
+    KeepReach reach_;
 };
 
 }  // namespace

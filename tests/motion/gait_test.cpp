@@ -366,6 +366,72 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "steps cut and begun anew at once, by any leg: feet stay out of the floor and stand still "
+    "[law]") {
+    const figure::Figure f = figure::make_mannequin(1.75);
+    int sunk = 0, slipped = 0;
+    constexpr int kTrials = 100;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        std::uint32_t state = static_cast<std::uint32_t>(trial) * 7919u + 13u;
+        auto next = [&](int n) {
+            return static_cast<int>((state = state * 1664525u + 1013904223u) >> 8) % n;
+        };
+        Chain chain(f, standing(f, {}, 0.5 * trial));
+        std::string story;
+        for (int k = 0; k < 8; ++k) {
+            const Controls now = chain.at(chain.now_s());
+            const Vec3 ahead = rotate(now.legs[0].foot_rotation_world, {0, 0, 1});
+            const double gap = dot(now.legs[0].ankle_world - now.legs[1].ankle_world, ahead);
+            // Mostly the hind leg; one time in four whichever.
+            const Side side = next(4) == 0 || std::fabs(gap) < 0.1
+                                  ? (next(2) == 0 ? Side::kLeft : Side::kRight)
+                              : gap > 0 ? Side::kRight
+                                        : Side::kLeft;
+            const int what = next(6);
+            double natural = 0.8;
+            MovementPtr movement;
+            if (what < 4) {
+                const StepKind kind = std::fabs(gap) < 0.1 ? StepKind::kFirstHalf
+                                      : next(2) == 0       ? StepKind::kWhole
+                                                           : StepKind::kLastHalf;
+                const StepSpec spec{.transfer = side, .kind = kind};
+                movement = make_step(chain.context(), spec);
+                natural = step_duration_s(spec);
+            } else if (what == 4) {
+                movement = make_turn(
+                    chain.context(),
+                    {.heading_rad = heading_of(now.pelvis.rotation_world) + 0.3 * (next(9) - 4),
+                     .duration_s = 1});
+                natural = 1;
+            } else {
+                movement = make_idle(chain.context(), {});
+            }
+            const double part = next(2) == 0   ? 1
+                                : next(2) == 0 ? 0.02 + 0.03 * next(5)
+                                               : 0.1 + 0.1 * next(9);
+            story += std::to_string(what) + (side == Side::kLeft ? "L" : "R") +
+                     std::to_string(part).substr(0, 4) + " ";
+            chain.run({std::move(movement)}, natural * part);
+        }
+        chain.run({make_idle(chain.context(), {})}, 1);
+        const Measures m = chain.measured(240);
+        CAPTURE(trial);
+        CAPTURE(story);
+        INFO(report(m));
+        CHECK(m.join_position_m.value < 1e-6);
+        CHECK(m.join_pelvis_m_s.value < 0.05);
+        CHECK(m.limit_excess_deg.value < 1e-4);
+        CHECK(m.hover_mm.value < 8);
+        CHECK(m.swing_sink_mm.value < 15);
+        CHECK(m.slip_mm.value < 15);
+        sunk += m.swing_sink_mm.value > 2;
+        slipped += m.slip_mm.value > 1;
+    }
+    CHECK(sunk <= kTrials * 3 / 100);
+    CHECK(slipped <= kTrials * 3 / 100);
+}
+
 TEST_CASE("absurd durations, strokes and duty factors give a movement too [hostile]") {
     std::uint32_t state = 9;
     auto next = [&](int n) {

@@ -125,6 +125,7 @@ TEST_CASE("the seven-degree limb meets position and rotation of its goal at ever
 TEST_CASE(
     "solving puts feet and hands where the controls say and every joint inside its limits [law]") {
     Lcg random;
+    int raised = 0;
     for (const double height : {1.5, 1.9}) {
         const figure::Figure f = figure::make_mannequin(height);
         figure::Pose pose;
@@ -147,7 +148,14 @@ TEST_CASE(
                 CHECK(length(world[f.arms[side].hand.value].translation -
                              chest * c.arms[side].chest_from_hand.translation) <
                       outcome.arm_residual_m[side] + 1e-9);
-                CHECK(outcome.leg_residual_m[side] < 1e-9);
+                // Hips too low for an ankle raise the heel; the toes stay.
+                const Vec3 toes =
+                    Transform{c.legs[side].foot_rotation_world, c.legs[side].ankle_world} *
+                    f.legs[side].toes_foot;
+                const bool flat = outcome.leg_residual_m[side] < 1e-9;
+                CHECK(length(world[f.legs[side].toes.value].translation - toes) <
+                      (flat ? 1e-9 : 1e-4));
+                raised += !flat;
             }
             for (std::size_t j = 0; j < world.size(); ++j) {
                 CAPTURE(f.skeleton.joints[j].name);
@@ -156,6 +164,7 @@ TEST_CASE(
             }
         }
     }
+    CHECK(raised > 100);
 }
 
 TEST_CASE("a hand fixed to the world stays there whatever the trunk does [unit]") {
