@@ -25,9 +25,10 @@ struct ExploreOptions {
     // that does not hold there.
     bool find_dead = false;
     const Predicate* final = nullptr;
-    // Ends once every goal has been reached (and, with find_dead, a dead marking).
+    // Ends once every goal has been reached (and, with find_dead, a dead marking). Without
+    // `witnesses` the search then goes into the depth first.
     bool stop_when_found = false;
-    // Keep what firing sequences need: 4 bytes per state.
+    // Keep what firing sequences need: 4 bytes per state. On one thread they are the shortest.
     bool witnesses = false;
     // Stubborn sets: explore only what dead markings and goals need. Then states, edges and token
     // counts are those of the reduced graph. Ignored where it would be unsound: nets with levels.
@@ -65,7 +66,7 @@ struct Exploration {
 // Cost   5 to 16 bytes per state for most nets, 20 to 100 ns per edge.
 Exploration explore(const PlainNet& net, const ExploreOptions& options, const Budget& budget);
 
-struct Packing;
+struct PlainStates;  // the packed markings of a graph
 
 // The whole graph with its states, numbered in the order in which breadth-first search finds them;
 // state 0 is the initial marking.
@@ -78,15 +79,13 @@ struct PlainGraph {
     // A shortest firing sequence from the initial marking.
     std::vector<std::uint32_t> firings_to(std::uint32_t state) const;
 
-    std::shared_ptr<const Packing> packing;
-    std::vector<std::uint8_t> packed;    // packing's bytes per state
-    std::vector<std::uint32_t> parents;  // of the breadth-first tree
+    std::shared_ptr<const PlainStates> states;
 };
 
 // Explores twice on one thread, first to count, then to fill.
-// Gives  a graph with ended != kDone and what is known where the budget ends: states that were not
-//        expanded are kCut.
-// Cost   8 bytes per edge, about 16 per state, and 1/4 byte per state and atom.
+// Gives  where the budget ends while exploring: a graph with ended != kDone whose states are those
+//        that were found, all of them kCut.
+// Cost   8 bytes per edge, about 25 per state, and 1/4 byte per state and atom.
 PlainGraph build_graph(const PlainNet& net, std::span<const Predicate> atoms,
                        const Predicate* final, const Budget& budget);
 
