@@ -3,6 +3,7 @@
 
 #include "defects.h"
 #include "pnml_document.h"
+#include "symmetric_unfold.h"
 #include "test_arcs.h"
 
 namespace puppetri::io {
@@ -101,16 +102,17 @@ Checked<NetFile> read_pnml(std::string_view text, const std::string& path,
     out.draft.sources_on_beats = true;
     if (read_pnml_document(text, path, limits, document, defects)) {
         out.draft.name = document.name.empty() ? document.id : document.name;
-        if (document.type == PnmlType::kColoured) {
-            defects.error("coloured-net", document.text.where(document.net), "net " + document.id,
-                          "the net has colours", "unfold it to a place/transition net");
-        } else if (document.nodes.size() + document.arcs.size() > limits.elements) {
+        if (document.nodes.size() + document.arcs.size() > limits.elements) {
             defects.error("net-too-large", {path, 0, 0, 1}, "",
                           "more than " + std::to_string(limits.elements) + " elements",
                           "split the model, or ask for more");
         } else {
             fill_look(document, out.look);
-            build_plain(document, out, defects);
+            if (document.type == PnmlType::kColoured) {
+                build_symmetric(document, limits, out, defects);
+            } else {
+                build_plain(document, out, defects);
+            }
         }
     }
     if (defects.any()) {

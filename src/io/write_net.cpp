@@ -13,6 +13,9 @@
 namespace puppetri::io {
 namespace {
 
+constexpr std::size_t kFeatures = static_cast<std::size_t>(NetFeature::kStatements) + 1;
+constexpr std::uint32_t kMostTold = 3;  // elements of each kind
+
 std::string lower_case(std::string_view text) {
     std::string out(text);
     for (char& c : out) {
@@ -83,18 +86,28 @@ std::optional<NetFormat> written_format_of(std::string_view path) {
 
 Checked<WrittenNet> write_net(const NetFile& file, NetFormat to, const WriteNetOptions& options) {
     Defects defects;
-    std::array<std::uint32_t, 32> dropped{};
+    std::array<std::uint32_t, kFeatures> dropped{}, refused{};
     for (const FeatureUse& use : features_of(file.draft)) {
+        const auto kind = static_cast<std::size_t>(use.feature);
         if (can_say(to, use.feature)) {
             continue;
         }
         // Holdings and the like cannot be dropped: what they stand for is not in the draft yet.
         if ((options.lossy && use.feature != NetFeature::kComposition) ||
             use.feature == NetFeature::kStatements) {
-            ++dropped[static_cast<std::size_t>(use.feature)];
-        } else {
+            ++dropped[kind];
+        } else if (++refused[kind] <= kMostTold) {
             defects.error("not-in-format", use.where, use.element,
                           std::string(name_of(to)) + " has no " + name_of(use.feature),
+                          "choose another format, or drop them with --lossy");
+        }
+    }
+    for (std::size_t i = 0; i < kFeatures; ++i) {
+        if (refused[i] > kMostTold) {
+            defects.error("not-in-format", {}, "net " + file.draft.name,
+                          std::string(name_of(to)) + " has no " +
+                              name_of(static_cast<NetFeature>(i)) + ": " +
+                              std::to_string(refused[i] - kMostTold) + " more have them",
                           "choose another format, or drop them with --lossy");
         }
     }

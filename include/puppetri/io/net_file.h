@@ -22,10 +22,10 @@ const char* name_of(NetFormat format);
 // How large a file and what it unfolds to may be; beyond that a reader fails with code
 // "file-too-large" or "net-too-large".
 struct NetLimits {
-    std::uint64_t bytes = 100'000'000;     // of the file
-    std::uint64_t elements = 10'000'000;   // places, transitions and arcs together, after unfolding
-    std::uint64_t bindings = 100'000'000;  // of variables tried while unfolding a coloured net
-    std::uint32_t nesting = 200;           // of pages, of terms
+    std::uint64_t bytes = 100'000'000;    // of the file
+    std::uint64_t elements = 10'000'000;  // places, transitions and arcs together, after unfolding
+    std::uint64_t bindings = 50'000'000;  // of variables tried while unfolding a coloured net
+    std::uint32_t nesting = 200;          // of pages, of terms
 };
 
 // The names that a file gives, and what they stand for: one element; several, where a coloured

@@ -28,7 +28,8 @@ std::optional<NetFormat> written_format_named(std::string_view name);
 // Needs  a draft without holdings, fusions, rendezvous and refinements: net::lower() makes it so.
 // Gives  a text that the format's reader turns into an equal draft (PNML, PIPE, TINA), where
 //        nothing was dropped or renamed.
-// Fails  "not-in-format", once per element that the format cannot say, unless lossy.
+// Fails  "not-in-format", with the first elements of each kind that the format cannot say, unless
+//        lossy.
 Checked<WrittenNet> write_net(const NetFile& file, NetFormat to,
                               const WriteNetOptions& options = {});
 
