@@ -7,7 +7,7 @@ Saturation::Saturation(DiagramStore& store, SymbolicLevels& levels)
     : store_(store),
       levels_(levels),
       event_count_(static_cast<std::uint32_t>(levels.events().size())),
-      first_op_(store.new_op(kKinds * event_count_ + 2)),
+      first_op_(store.new_op(kKinds * event_count_ + kWholes)),
       by_top_(levels.count() + 1),
       rows_(levels.count() + 1),
       have_row_(levels.count() + 1),
@@ -76,13 +76,7 @@ void Saturation::saturate_frame(std::uint32_t level, std::uint32_t base) {
             }
             const auto to = static_cast<std::uint32_t>(found);
             store_.extend_full(base, to + 1);
-            const NodeId old = store_.at(base + to).child;
-            const std::uint32_t top = store_.frame();
-            store_.push(0, reached);
-            const NodeId both = store_.unite(old, reached);
-            store_.pop_to(top);
-            if (both != old) {
-                store_.at(base + to).child = both;
+            if (add_to(base + to, reached)) {
                 queue.add(to);
             }
         }
@@ -147,16 +141,61 @@ NodeId Saturation::step_by(std::uint32_t event, NodeId from, NodeId within, bool
 }
 
 NodeId Saturation::step(NodeId from, NodeId within, bool backward) {
-    NodeId all = DiagramStore::kEmpty;
-    for (std::uint32_t e = 0; e < event_count_ && !store_.failed(); ++e) {
-        const std::uint32_t base = store_.frame();
-        store_.push(0, all);
-        const NodeId one = step_from(e, 0, from, within, backward);
-        store_.push(0, one);
-        all = store_.unite(all, one);
-        store_.pop_to(base);
+    if (by_top_[0].empty()) {
+        return step_all(from, within, backward);
     }
+    const std::uint32_t base = store_.frame();  // events that touch nothing lead from here to here
+    store_.push(0, store_.intersect(from, within));
+    store_.push(0, step_all(from, within, backward));
+    const NodeId all = store_.unite(store_.at(base).child, store_.at(base + 1).child);
+    store_.pop_to(base);
     return all;
+}
+
+// By all events whose top is not above the node's level: those of this level, and what the lower
+// ones do to each child.
+NodeId Saturation::step_all(NodeId node, NodeId within, bool backward) {
+    if (node <= DiagramStore::kTop || within == DiagramStore::kEmpty) {
+        return DiagramStore::kEmpty;
+    }
+    NodeId result = DiagramStore::kEmpty;
+    if (store_.cached(op_all(kStepAll, backward), node, within, result)) {
+        return result;
+    }
+    const std::uint32_t level = store_.level(node);
+    const std::uint32_t base = store_.frame();
+    store_.extend_full(base, levels_.value_count(level));
+    const DiagramStore::View allowed = store_.entries(within);
+    for (const DiagramEntry& e : store_.entries(node)) {
+        add_to(base + e.value, step_all(e.child, allowed.child_of(e.value), backward));
+        for (const std::uint32_t event : by_top_[level]) {
+            const std::int32_t to =
+                target(levels_.events()[event].touches[0].function, e.value, backward);
+            if (to >= 0) {
+                const NodeId room = allowed.child_of(static_cast<std::uint32_t>(to));
+                add_to(base + static_cast<std::uint32_t>(to),
+                       step_from(event, 1, e.child, room, backward));
+            }
+        }
+    }
+    result = store_.make(level, base);
+    store_.remember(op_all(kStepAll, backward), node, within, result);
+    return result;
+}
+
+// Unites a slot of the frame with a node.
+// Gives  whether the slot has grown.
+bool Saturation::add_to(std::uint32_t position, NodeId more) {
+    const NodeId old = store_.at(position).child;
+    if (more == DiagramStore::kEmpty || more == old) {
+        return false;
+    }
+    const std::uint32_t top = store_.frame();
+    store_.push(0, more);
+    const NodeId both = store_.unite(old, more);
+    store_.pop_to(top);
+    store_.at(position).child = both;
+    return both != old;
 }
 
 NodeId Saturation::step_from(std::uint32_t event, std::uint32_t position, NodeId node,
@@ -234,7 +273,7 @@ NodeId Saturation::close_node(NodeId node, NodeId within, bool backward) {
         return node;
     }
     NodeId result = DiagramStore::kEmpty;
-    if (store_.cached(op_close(backward), node, within, result)) {
+    if (store_.cached(op_all(kClose, backward), node, within, result)) {
         return result;
     }
     const std::uint32_t level = store_.level(node);
@@ -247,7 +286,7 @@ NodeId Saturation::close_node(NodeId node, NodeId within, bool backward) {
     }
     close_frame(level, base, within, backward);
     result = store_.make(level, base);
-    store_.remember(op_close(backward), node, within, result);
+    store_.remember(op_all(kClose, backward), node, within, result);
     return result;
 }
 
@@ -268,20 +307,10 @@ void Saturation::close_frame(std::uint32_t level, std::uint32_t base, NodeId wit
             if (to < 0) {
                 continue;
             }
-            const std::uint32_t position = base + static_cast<std::uint32_t>(to);
             const NodeId room = allowed.child_of(static_cast<std::uint32_t>(to));
             const NodeId reached =
                 fire_within(event, 1, store_.at(base + value).child, room, backward);
-            if (reached == DiagramStore::kEmpty || store_.failed()) {
-                continue;
-            }
-            const NodeId old = store_.at(position).child;
-            const std::uint32_t top = store_.frame();
-            store_.push(0, reached);
-            NodeId both = store_.unite(old, reached);
-            store_.pop_to(top);
-            if (both != old) {
-                store_.at(position).child = both;
+            if (!store_.failed() && add_to(base + static_cast<std::uint32_t>(to), reached)) {
                 queue.add(static_cast<std::uint32_t>(to));
             }
         }

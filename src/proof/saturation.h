@@ -98,9 +98,12 @@ class Saturation {
     std::uint32_t op(std::uint32_t kind, std::uint32_t event) const {
         return first_op_ + kind * event_count_ + event;
     }
-    std::uint32_t op_close(bool backward) const {
-        return first_op_ + kKinds * event_count_ + backward;
+    enum Whole : std::uint32_t { kClose, kStepAll = kClose + 2, kWholes = kStepAll + 2 };
+    std::uint32_t op_all(std::uint32_t whole, bool backward) const {
+        return first_op_ + kKinds * event_count_ + whole + backward;
     }
+    NodeId step_all(NodeId node, NodeId within, bool backward);
+    bool add_to(std::uint32_t position, NodeId more);
     NodeId enabled_from(std::uint32_t event, std::uint32_t position, NodeId node);
 
     DiagramStore& store_;

@@ -80,7 +80,7 @@ bool SymbolicTables::try_order(const PlaceGroups& order, std::uint64_t work, dou
     peak_bytes = std::max(peak_bytes, store->peak_bytes());
     ended = store->ended();
     if (ended == Ended::kDone) {
-        store->limit_work(~std::uint64_t{0});
+        store->end_limit();
         levels->close();
         store->charge(levels->bytes());
         store->keep(all);

@@ -97,6 +97,14 @@ class DiagramStore {
     // Fails with kStates after so much work, counted in nodes looked for: the same on every
     // machine.
     void limit_work(std::uint64_t work) { work_left_ = work; }
+    // No limit any more.
+    // Gives  whether the limit was what had failed; then all is well again.
+    bool end_limit() {
+        work_left_ = ~std::uint64_t{0};
+        const bool over = ended_ == Ended::kStates;
+        ended_ = over ? Ended::kDone : ended_;
+        return over;
+    }
     std::uint32_t live_nodes() const { return used_; }
     std::uint32_t id_bound() const { return next_id_; }  // all ids are below
     std::uint64_t bytes() const {

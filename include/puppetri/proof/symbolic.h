@@ -154,9 +154,10 @@ class SymbolicSpace {
     std::optional<bool> stable(std::uint32_t place);           // the same count in every marking
     std::optional<bool> reversible();                          // AG EF initial
 
-    // A shortest path of firings from a marking to a member of `to`, through markings of `within`
-    // (its first and last marking may lie outside).
-    // Gives  nothing when there is none (then ended() is kDone), or when the budget ended.
+    // A path of firings from a marking to a member of `to`, through markings of `within` (its first
+    // and last marking may lie outside): a shortest one, or any, where a shortest one costs
+    // millions of nodes. Gives  nothing when there is none (then ended() is kDone), or when the
+    // budget ended.
     std::optional<std::vector<std::uint32_t>> path(std::span<const std::uint32_t> from,
                                                    const StateSet& to, const StateSet& within);
     std::optional<std::vector<std::uint32_t>> path_to(const StateSet& to) {
@@ -177,6 +178,13 @@ class SymbolicSpace {
     StateSet satisfying(const Predicate& predicate, std::uint32_t index, const StateSet& within);
     StateSet before(const StateSet& a, const StateSet& within);
     StateSet after(const StateSet& a, const StateSet& within);
+    static constexpr std::uint32_t kAnyTransition = ~std::uint32_t{0};
+    struct Ball {
+        StateSet set;
+        std::uint32_t by = kAnyTransition;  // that one firing of this leads into the set before
+    };
+    std::vector<Ball> balls_around(const StateSet& to, std::span<const std::uint32_t> from,
+                                   const StateSet& room, bool shortest);
 
     std::unique_ptr<SymbolicTables> tables_;
 };
