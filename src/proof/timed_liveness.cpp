@@ -227,82 +227,87 @@ TimedLiveness timed_liveness(const net::Net& net, const Budget& budget) {
     TimedLiveness out;
     Plain picture = plain(net);
     if (picture.unsound || picture.net.has_inhibitors()) {
-        out.reason =
+        out.theorem =
             "an arc takes all tokens of a place, or is an inhibitor, or a place has a limit";
         return out;
     }
     Check check(net, picture);
-    out.reason = check.obstacle();
-    if (!out.reason.empty()) {
+    out.theorem = check.obstacle();
+    if (!out.theorem.empty()) {
         return out;
     }
     picture.net.has_levels = false;  // priorities only order clusters
     picture.net.level.assign(picture.net.level.size(), 0);
     const StructuralLiveness structure = structural_liveness(picture.net, budget);
     if (!structure.live || !structure.bounded) {
-        out.reason = structure.not_live ? "the untimed net is not live"
-                                        : "the untimed net is not known to be live and bounded";
+        out.theorem = structure.not_live ? "the untimed net is not live"
+                                         : "the untimed net is not known to be live and bounded";
         return out;
     }
-    out.live = true;
-    out.reason = std::string(structure.theorem) + ", and every choice stays free in time";
+    out.live_unless_stopped = true;
+    out.theorem = std::string(structure.theorem) + ", and every choice stays free in time";
     out.needs_time_goes_on = !net.paced() && !check.every_circuit_takes_time();
     for (const net::Special& s : net.tables().specials) {
         out.needs_clean_ends = out.needs_clean_ends || !s.must_be_clean.empty();
     }
+    out.live = !out.needs_time_goes_on && !out.needs_clean_ends;
     return out;
 }
 
-IdentityAnswer conserves_identity(const net::NetDraft& draft, std::span<const std::uint32_t> places,
+IdentityAnswer conserves_identity(const net::Net& net, std::span<const std::uint32_t> places,
                                   std::span<const std::uint32_t> attribute) {
-    std::vector<std::uint32_t> which(draft.places.size(), net::kNoIndex);
+    const NetTables& tables = net.tables();
+    std::vector<std::uint32_t> which(net.place_count(), net::kNoIndex);
     for (std::size_t i = 0; i < places.size(); ++i) {
         which[places[i]] = attribute[i];
     }
-    for (const net::TransitionDraft& t : draft.transitions) {
-        const auto no = [&](const std::string& why) {
-            return IdentityAnswer{false, "transition " + t.path + " " + why};
+    for (const net::Special& s : tables.specials) {
+        const auto no = [&](const char* why, std::uint32_t place) {
+            return IdentityAnswer{
+                false, "transition " +
+                           std::string(net.transition(net::TransitionIndex{s.transition}).path) +
+                           why + std::string(net.place(net::PlaceIndex{place}).path)};
         };
         std::vector<std::uint32_t> taken, given;  // variables
-        for (const net::ArcDraft& arc : t.inputs) {
-            const std::uint32_t a = which[arc.place.value];
-            const bool takes =
-                arc.kind == net::ArcKind::kTake || arc.kind == net::ArcKind::kTakeNow;
-            if (a == net::kNoIndex || arc.kind == net::ArcKind::kRead ||
-                arc.kind == net::ArcKind::kReadNow || arc.kind == net::ArcKind::kUnless ||
-                arc.kind == net::ArcKind::kUnlessReady) {
+        std::uint32_t last = 0;
+        for (const net::ArcTable& arc : s.arcs) {
+            const std::uint32_t a = which[arc.place];
+            const bool all = arc.kind == ArcKind::kTakeAll || arc.kind == ArcKind::kTakeAllNow;
+            if (a == net::kNoIndex ||
+                (!all && arc.kind != ArcKind::kTake && arc.kind != ArcKind::kTakeNow)) {
                 continue;
             }
-            const std::string& name = draft.places[arc.place.value].path;
-            if (!takes || arc.weight != 1) {
-                return no("takes more than one token of " + name + " at once");
+            if (all || arc.weight != 1) {
+                return no(" takes more than one token at once of place ", arc.place);
             }
             const auto pattern = std::find_if(
                 arc.pattern.begin(), arc.pattern.end(),
-                [&](const auto& p) { return p.attribute == a && p.binds.has_value(); });
+                [&](const auto& p) { return p.attribute == a && p.binds != net::kNoIndex; });
             if (pattern == arc.pattern.end()) {
-                return no("takes a token of " + name + " without asking whose it is");
+                return no(" does not ask whose token it takes of place ", arc.place);
             }
-            taken.push_back(*pattern->binds);
+            taken.push_back(pattern->binds);
+            last = arc.place;
         }
-        for (const net::OutputDraft& o : t.outputs) {
-            const std::uint32_t a = which[o.place.value];
+        for (const net::OutputTable& o : s.outputs) {
+            const std::uint32_t a = which[o.place];
             if (a == net::kNoIndex) {
                 continue;
             }
-            const std::string& name = draft.places[o.place.value].path;
-            const auto nodes =
-                o.attributes.size() > a ? o.attributes[a].nodes() : std::span<const Expr::Node>();
-            if (o.weight != 1 || nodes.size() != 1 || nodes[0].op != ExprOp::kSlot ||
-                nodes[0].slot.kind != static_cast<std::uint32_t>(net::SlotKind::kVariable)) {
-                return no("gives tokens to " + name + " that it has not taken");
+            const bool handed_on = o.weight == 1 && a < o.attributes.size() &&
+                                   tables.code.is_slot(o.attributes[a]) &&
+                                   tables.code.slots(o.attributes[a]).front().kind ==
+                                       static_cast<std::uint32_t>(net::SlotKind::kVariable);
+            if (!handed_on) {
+                return no(" makes tokens of its own for place ", o.place);
             }
-            given.push_back(nodes[0].slot.index);
+            given.push_back(tables.code.slots(o.attributes[a]).front().index);
+            last = o.place;
         }
         std::sort(taken.begin(), taken.end());
         std::sort(given.begin(), given.end());
         if (taken != given || std::adjacent_find(taken.begin(), taken.end()) != taken.end()) {
-            return no("does not give each identity that it takes to one token");
+            return no(" does not hand on each identity once, at place ", last);
         }
     }
     return {true, "each firing hands on the identities that it takes"};

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "puppetri/net/draft.h"
 #include "puppetri/net/net.h"
 #include "puppetri/proof/budget.h"
 #include "puppetri/proof/plain_net.h"
@@ -56,8 +55,9 @@ StructuralLiveness structural_liveness(const PlainNet& net, const Budget& budget
 // are constant, `auto`, distributed or `as` those.
 struct TimedLiveness {
     bool live = false;
-    std::string reason;  // the theorem; or why it does not apply
-    // The run may stop with a fault unless these rules hold too.
+    std::string theorem;  // or why it does not apply
+    // Live unless the run stops with a fault: `live` once these rules are proved too.
+    bool live_unless_stopped = false;
     bool needs_time_goes_on = false;  // not each circuit takes time
     bool needs_clean_ends = false;    // some module must be clean when it ends
 };
@@ -66,13 +66,12 @@ TimedLiveness timed_liveness(const net::Net& net, const Budget& budget);
 // Tokens that carry an actor or a prop are conserved one by one: each firing hands every identity
 // that it takes from `places` to exactly one token that it gives to them, and makes none. Then each
 // identity of an initial token is for ever in exactly one of the places.
-// Needs  a lowered draft (net::lower); `attribute[i]`: which attribute of places[i] is the
-// identity.
+// Needs  `attribute[i]`: which attribute of places[i] is the identity.
 struct IdentityAnswer {
     bool conserved = false;
     std::string reason;  // if not: the transition and what it does
 };
-IdentityAnswer conserves_identity(const net::NetDraft& draft, std::span<const std::uint32_t> places,
+IdentityAnswer conserves_identity(const net::Net& net, std::span<const std::uint32_t> places,
                                   std::span<const std::uint32_t> attribute);
 
 }  // namespace puppetri::proof
