@@ -96,6 +96,25 @@ bool all_live(const Graph& graph, std::uint32_t transitions) {
     return true;
 }
 
+// A cycle in which no time passes.
+bool instant_may_never_end(const Graph& graph) {
+    std::vector<std::uint8_t> endless(graph.size(), 1);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::uint32_t s = 0; s < graph.size(); ++s) {
+            bool goes_on = false;
+            for (const Edge& e : graph.edges.row(s)) {
+                goes_on = goes_on || (e.label != Edge::kPass && endless[e.target] != 0);
+            }
+            if (endless[s] != 0 && !goes_on) {
+                endless[s] = 0;
+                changed = true;
+            }
+        }
+    }
+    return std::find(endless.begin(), endless.end(), 1) != endless.end();
+}
+
 }  // namespace
 
 TEST_CASE("what is live in time by theorem is live in the graph of all timed runs [law]") {
@@ -118,7 +137,11 @@ TEST_CASE("what is live in time by theorem is live in the graph of all timed run
             CHECK((timed.graph.ended != Ended::kDone || !answer.live));
             continue;
         }
+        if (!answer.live && instant_may_never_end(timed.graph)) {
+            continue;
+        }
         CAPTURE(answer.theorem);
+        CAPTURE(answer.live);
         CHECK(all_live(timed.graph, net->transition_count()));
         ++live;
     }
