@@ -60,7 +60,7 @@ class Planner {
         first_ = spec.kind == StepKind::kFirstHalf;
         last_ = spec.kind == StepKind::kLastHalf;
         n_ = whole_ ? plan_.duration_s : 2 * plan_.duration_s;
-        x_ = std::fmin(spec.stroke_m, kLongestStroke * f_.leg_m);
+        x_ = std::fmin(spec.stroke_m, longest_stroke_m(f_, spec.duty_factor));
         // Long steps for the legs turn the pelvis more.
         yaw_ = clamp(radians(10) * x_ / f_.leg_m, radians(3), radians(10));
         side_ = support_side_ == Side::kLeft ? 1 : -1;
@@ -564,6 +564,11 @@ class Planner {
 
 }  // namespace
 
+double longest_stroke_m(const figure::Figure& figure, double duty_factor) {
+    return duty_factor < kRunsBelow ? longest_run_stroke_m(figure, duty_factor)
+                                    : kLongestStroke * figure.leg_m;
+}
+
 double plan_duration_s(const MotionContext& context, const StepSpec& spec) {
     const double T =
         context.duration.ticks > 0 ? context.duration.seconds() : step_duration_s(spec);
@@ -571,7 +576,7 @@ double plan_duration_s(const MotionContext& context, const StepSpec& spec) {
 }
 
 StepPlan plan_step(const MotionContext& context, const StepSpec& spec) {
-    return spec.duty_factor < 0.495 ? plan_run(context, spec) : Planner(context, spec).plan();
+    return spec.duty_factor < kRunsBelow ? plan_run(context, spec) : Planner(context, spec).plan();
 }
 
 }  // namespace puppetri::motion

@@ -29,8 +29,12 @@ struct StepPlan {
 
 // What is planned takes a sixth of a second at least, half steps a tenth: a net that allows less
 // cuts the movement there, and the next goes on from that pose.
+// Below it a foot is on the ground for less than half of the time: a run.
+inline constexpr double kRunsBelow = 0.495;
+
 double plan_duration_s(const MotionContext& context, const StepSpec& spec);
 StepPlan plan_step(const MotionContext& context, const StepSpec& spec);
+double longest_run_stroke_m(const figure::Figure& figure, double duty_factor);
 StepPlan plan_run(const MotionContext& context,
                   const StepSpec& spec);  // below a duty factor of 0.5
 

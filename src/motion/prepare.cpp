@@ -2,6 +2,8 @@
 // The functions behind the table of movements.
 #include "puppetri/motion/prepare.h"
 
+#include <string>
+
 #include "arguments.h"
 #include "compose.h"
 #include "puppetri/math/rotation.h"
@@ -26,6 +28,10 @@ constexpr double kTurning_rad_s = 2.9;
 // A ball farther than this from where the hands would hold it is not caught.
 constexpr double kCatch_m = 0.02;
 
+std::string centimetres(double m) {
+    return std::to_string(static_cast<long long>(std::nearbyint(m * 100))) + " cm";
+}
+
 class Preparer {
  public:
     Preparer(const BoundCall& call, const MovementSignature& signature,
@@ -37,9 +43,11 @@ class Preparer {
           around_(around),
           notes_(notes) {}
 
-    Checked<Prepared> run();
+    Prepared run();
 
  private:
+    void tell_long_stroke(double stroke_m);
+
     // Whole movements.
     void stand();
     void step(StepKind kind, double stroke_m);
@@ -66,9 +74,6 @@ class Preparer {
     void note(const char* code, const char* message, const char* remedy) {
         notes_.push_back({Severity::kWarning, code, {}, call_.movement, message, remedy});
     }
-    void fail(const char* code, const char* message, const char* remedy) {
-        errors_.push_back({Severity::kError, code, {}, call_.movement, message, remedy});
-    }
 
     const BoundCall& call_;
     const MovementSignature& signature_;
@@ -76,7 +81,6 @@ class Preparer {
     const MotionContext& context_;
     const Surroundings& around_;
     Diagnostics& notes_;
-    Diagnostics errors_;
     MovementPtr arms_;  // what the arms are left to, or null
     Prepared result_;
 };
@@ -110,13 +114,9 @@ LimbSet Preparer::main_limbs() {
         const MovementSignature* signature = find_movement(nested->movement, SubjectKind::kActor);
         PUP_REQUIRE(signature != nullptr && signature->as_argument);
         Preparer inner(*nested, *signature, context_, around_, notes_);
-        Checked<Prepared> prepared = inner.run();
-        if (!prepared) {
-            errors_ = std::move(prepared).error();
-            return kAllLimbs;
-        }
-        arms_ = prepared->movement;
-        result_.prop = prepared->prop;
+        const Prepared prepared = inner.run();
+        arms_ = prepared.movement;
+        result_.prop = prepared.prop;
     } else if (around_.holds.valid()) {
         arms_ = make_carry(context_, {.radius_m = radius(around_.holds)});
         result_.prop = around_.holds;
@@ -147,7 +147,23 @@ StepKind Preparer::half_kind(Side transfer) const {
     return std::fabs(behind) < 0.1 ? StepKind::kFirstHalf : StepKind::kLastHalf;
 }
 
+void Preparer::tell_long_stroke(double stroke_m) {
+    const double most_m = longest_stroke_m(context_.figure, arguments_.number("duty"));
+    if (stroke_m > most_m + 1e-9) {
+        notes_.push_back(
+            {Severity::kWarning,
+             "long-stroke",
+             {},
+             call_.movement,
+             "a stroke of " + centimetres(stroke_m) +
+                 " is longer than these legs reach: it is shortened to " + centimetres(most_m),
+             "write a shorter stroke (at most 43 % of the height for a walk), or let it "
+             "run with a smaller duty"});
+    }
+}
+
 void Preparer::step(StepKind kind, double stroke_m) {
+    tell_long_stroke(stroke_m);
     const LimbSet limbs = main_limbs();
     finish(make_step(context_, {.transfer = arguments_.side("side"),
                                 .kind = kind,
@@ -168,6 +184,7 @@ void advance_over(MotionContext& context, const Movement& movement) {
 }
 
 void Preparer::walk() {
+    tell_long_stroke(arguments_.number("stroke"));
     const int steps = static_cast<int>(walked_steps(arguments_.number("steps")));
     const LimbSet limbs = main_limbs();
     StepSpec spec{.transfer = arguments_.side("side"),
@@ -282,18 +299,24 @@ void Preparer::throw_ball() {
 void Preparer::catch_ball() {
     const PropIndex ball = result_.prop = arguments_.prop("ball");
     result_.gaze = {.kind = GazeKind::kProp, .prop = ball};
+    if (around_.holds.valid() && !holds(ball)) {
+        note("hands-full", "its hands hold another prop", "throw that first");
+        result_.movement = side_by_side(make_idle(context_, {.limbs = without(kAllLimbs, kBothArms),
+                                                             .duration_s = CatchSpec{}.duration_s}),
+                                        make_carry(context_, {.radius_m = radius(around_.holds)}));
+        return;
+    }
     if (!holds(ball)) {
         const Vec3 hands = world_from_chest(context_.figure, context_.now) *
                            held_ball(context_, radius(ball)).chest_from_ball.translation;
         const double off = length(hands - around_.props[ball.value].position_world);
-        if (around_.holds.valid()) {
-            fail("hands-full", "its hands hold another prop", "throw that first");
-        } else if (off > kCatch_m) {
-            fail("out-of-reach", "the ball is not between its hands when it shall catch it",
+        if (off > kCatch_m) {
+            note("out-of-reach",
+                 "the ball is not between its hands when it shall catch it: they close on air",
                  "let it be ready before the ball is thrown, and catch at the instant the flight "
                  "ends");
         }
-        result_.takes_prop = errors_.empty();
+        result_.takes_prop = off <= kCatch_m;
     }
     result_.movement = make_catch(context_, {.radius_m = radius(ball)});
 }
@@ -304,6 +327,7 @@ void Preparer::leg(bool support) {
     const Side transfer = support ? other(me) : me;
     const bool half = arguments_.flag("half");
     const double stroke = arguments_.number("stroke");
+    tell_long_stroke(half ? 2 * stroke : stroke);
     result_.movement = make_step(
         context_, {.transfer = transfer,
                    .kind = half ? half_kind(transfer) : StepKind::kWhole,
@@ -352,7 +376,7 @@ void Preparer::carry(bool stay) {
                                              .stay = stay && around_.holds.valid()});
 }
 
-Checked<Prepared> Preparer::run() {
+Prepared Preparer::run() {
     const std::string_view name = signature_.name;
     if (signature_.subject == SubjectKind::kLimb) {
         if (name == "support" || name == "transfer") {
@@ -386,9 +410,6 @@ Checked<Prepared> Preparer::run() {
         PUP_REQUIRE(name == "swing");
         result_.movement = make_relax(context_, 1);
     }
-    if (!errors_.empty()) {
-        return Unexpected(std::move(errors_));
-    }
     return std::move(result_);
 }
 
@@ -401,8 +422,8 @@ SimTime standing_time(double lasting_s) {
     return whole_milliseconds(clamp(lasting_s, 0.001, 86'400));
 }
 
-Checked<Prepared> prepare(const BoundCall& call, const MotionContext& context,
-                          const Surroundings& around, Diagnostics& notes) {
+Prepared prepare(const BoundCall& call, const MotionContext& context, const Surroundings& around,
+                 Diagnostics& notes) {
     const MovementSignature* signature = find_movement(call.movement, call.subject.kind);
     PUP_REQUIRE(signature != nullptr);
     return Preparer(call, *signature, context, around, notes).run();

@@ -44,7 +44,7 @@ class RunPlanner {
         // While a foot stands the body travels by twice the duty factor times the stroke: as far as
         // a leg reaches.
         const double duty = clamp(spec.duty_factor, 0.2, 0.5);
-        x_ = std::fmin(spec.stroke_m, kLongestStance * f_.leg_m / (2 * duty));
+        x_ = std::fmin(spec.stroke_m, longest_run_stroke_m(f_, duty));
         speed_ = x_ / n_;
         lead_ = std::fmin(
             0.1, 0.11 * x_);  // runners land nearly under themselves and push off far behind
@@ -321,6 +321,10 @@ class RunPlanner {
 };
 
 }  // namespace
+
+double longest_run_stroke_m(const figure::Figure& figure, double duty_factor) {
+    return kLongestStance * figure.leg_m / (2 * clamp(duty_factor, 0.2, 0.5));
+}
 
 StepPlan plan_run(const MotionContext& context, const StepSpec& spec) {
     return RunPlanner(context, spec).plan();

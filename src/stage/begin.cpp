@@ -47,43 +47,39 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
     const motion::Surroundings around{seen.actors, seen.props, seen.sets, activity.actor,
                                       held_by(activity.actor, now)};
     Diagnostics notes;
-    Checked<motion::Prepared> prepared = motion::prepare(call, context, around, notes);
+    const motion::Prepared prepared = motion::prepare(call, context, around, notes);
     report(activity.action, notes);
-    if (!prepared) {
-        report(activity.action, prepared.error());
-        return SimTime{-1};
-    }
-    activity.movement = prepared->movement;
+    activity.movement = prepared.movement;
     const LimbSet limbs = activity.movement->limbs;
-    const ActorTimeline& timeline = take.actors[activity.actor.value].timeline;
-    for (int i = 0; i < motion::kLimbCount; ++i) {
-        const std::uint32_t owner = timeline.in_charge(static_cast<Limb>(i), now).owner;
-        if (limbs.has(static_cast<Limb>(i)) && owner != ~0u && activities[owner].left > now) {
-            overlaps.push_back({owner, number});
+    for (const std::uint32_t other : running) {
+        const Activity& a = activities[other];
+        if (a.actor == activity.actor && a.movement != nullptr &&
+            (a.movement->limbs.bits & limbs.bits) != 0) {
+            overlaps.push_back({other, number});
         }
     }
+    running.push_back(number);
     take_limbs(activity.actor, limbs, activity.movement, number);
-    if (limbs.has(Limb::kBody) || prepared->gaze.kind != motion::GazeKind::kOwn) {
-        take.actors[activity.actor.value].gazes.push_back({now, prepared->gaze});
+    if (limbs.has(Limb::kBody) || prepared.gaze.kind != motion::GazeKind::kOwn) {
+        take.actors[activity.actor.value].gazes.push_back({now, prepared.gaze});
     }
     Waiting& wait = waiting[activity.actor.value];
-    if (prepared->catches_at_world) {
-        wait = {prepared->prop, *prepared->catches_at_world, number};
+    if (prepared.catches_at_world) {
+        wait = {prepared.prop, *prepared.catches_at_world, number};
     } else if (limbs.has(Limb::kLeftArm) || limbs.has(Limb::kRightArm)) {
         wait = {};
     }
-    if (prepared->takes_prop) {
-        PropTimeline& line = take.props[prepared->prop.value];
-        const Transform prop = take.world_from_prop(prepared->prop, now, true);
-        const Transform hands =
-            take.between_hands(activity.actor, take.radius(prepared->prop), now);
+    if (prepared.takes_prop) {
+        PropTimeline& line = take.props[prepared.prop.value];
+        const Transform prop = take.world_from_prop(prepared.prop, now, true);
+        const Transform hands = take.between_hands(activity.actor, take.radius(prepared.prop), now);
         line.take({.from = now,
                    .kind = Holding::kHands,
                    .actor = activity.actor,
                    .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation)});
     }
-    if (prepared->releases_prop) {
-        activity.releases = prepared->prop;
+    if (prepared.releases_prop) {
+        activity.releases = prepared.prop;
         const Release release{now + activity.movement->duration, number};
         releases.insert(
             std::upper_bound(releases.begin(), releases.end(), release,
@@ -93,7 +89,7 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
     ScoreEntry& row = take.score[activity.row];
     row.actor = play.cast.actors[activity.actor.value].name;
     row.limbs = limbs;
-    row.prop = prepared->prop.valid() ? play.cast.props[prepared->prop.value].name : "";
+    row.prop = prepared.prop.valid() ? play.cast.props[prepared.prop.value].name : "";
     return activity.movement->duration;
 }
 

@@ -133,6 +133,8 @@ void Stage::left(net::ActivityIndex activity, SimTime at) {
     d.advance(at);
     Activity& a = d.activities[activity.value];
     a.left = at;
+    d.running.erase(std::remove(d.running.begin(), d.running.end(), activity.value),
+                    d.running.end());
     d.take.score[a.row].left = at;
 }
 

@@ -43,6 +43,7 @@ struct Stage::Data {
     Take take;
     SimTime now{-1};
     std::vector<Activity> activities;
+    std::vector<std::uint32_t> running;  // those of actors that have not left yet
     std::vector<net::RaisedEvent> raised;
     std::uint32_t raised_by = ~0u;
     Diagnostics diagnostics;
@@ -295,15 +296,9 @@ struct Stage::Data {
              a.call.movement == "fly" ? "let the actors come closer, or write how long it takes"
                                       : "write how long it takes"});
     }
-    void report(net::ActionIndex action, const Diagnostics& list) {
-        for (const Diagnostic& d : list) {
-            if (d.severity == Severity::kWarning) {
-                warn(action, d.code.c_str(), d.message, d.remedy);
-            } else {
-                const Action& a = play.actions[action.value];
-                diagnostics.push_back(
-                    {d.severity, d.code, a.where, "place " + a.place, d.message, d.remedy});
-            }
+    void report(net::ActionIndex action, const Diagnostics& warnings) {
+        for (const Diagnostic& d : warnings) {
+            warn(action, d.code.c_str(), d.message, d.remedy);
         }
     }
 

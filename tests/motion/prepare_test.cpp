@@ -102,10 +102,9 @@ TEST_CASE("every movement prepares with its defaults, inside its interval, on it
         }
         const MotionContext context = scene.context(static_cast<int>(who));
         Diagnostics notes;
-        const auto prepared = prepare(call, context, scene.around(who), notes);
-        REQUIRE(prepared);
+        const Prepared prepared = prepare(call, context, scene.around(who), notes);
         CHECK(notes.empty());
-        const Movement& movement = *prepared->movement;
+        const Movement& movement = *prepared.movement;
         CHECK(movement.duration >= m.shortest);
         CHECK(movement.duration <= m.longest);
         CHECK(movement.duration.ticks % kTicksPerMillisecond == 0);
@@ -165,11 +164,10 @@ TEST_CASE("`takes auto` is what the call declares, whatever its arguments and th
             CHECK(declared.longest <= m.longest);
             for (const std::uint32_t who : {0u, 1u}) {
                 Diagnostics notes;
-                const auto prepared =
+                const Prepared prepared =
                     prepare(call, scene.context(static_cast<int>(who)), scene.around(who), notes);
-                REQUIRE(prepared);
-                CHECK(declared.has(prepared->movement->duration));
-                CHECK(prepared->movement->duration.ticks % kTicksPerMillisecond == 0);
+                CHECK(declared.has(prepared.movement->duration));
+                CHECK(prepared.movement->duration.ticks % kTicksPerMillisecond == 0);
             }
         }
     }
@@ -204,10 +202,9 @@ TEST_CASE("a prescribed duration is kept to the tick by every movement [law]") {
         CAPTURE(m.name);
         const std::uint32_t who = holds_ball(m) ? 0 : 1;
         Diagnostics notes;
-        const auto prepared = prepare(call_of(m), scene.context(static_cast<int>(who), odd),
-                                      scene.around(who), notes);
-        REQUIRE(prepared);
-        CHECK(prepared->movement->duration == odd);
+        const Prepared prepared = prepare(call_of(m), scene.context(static_cast<int>(who), odd),
+                                          scene.around(who), notes);
+        CHECK(prepared.movement->duration == odd);
     }
 }
 
@@ -238,13 +235,12 @@ TEST_CASE("the ball stays between the hands whatever movement carries it [law]")
     for (const char* name : {"throw", "carry", "hold", "face", "step"}) {
         CAPTURE(name);
         Diagnostics notes;
-        const auto prepared = prepare(call_of(*find_movement(name, SubjectKind::kActor)),
-                                      scene.context(0), scene.around(0), notes);
-        REQUIRE(prepared);
-        const double end_s = prepared->movement->duration.seconds();
+        const Prepared prepared = prepare(call_of(*find_movement(name, SubjectKind::kActor)),
+                                          scene.context(0), scene.around(0), notes);
+        const double end_s = prepared.movement->duration.seconds();
         for (double t = 0; t <= end_s; t += end_s / 50) {
             Controls c = scene.actors[0].controls;
-            prepared->movement->sample(t, c);
+            prepared.movement->sample(t, c);
             const Vec3 left = world_from_palm(scene.figure, c, Side::kLeft).translation,
                        right = world_from_palm(scene.figure, c, Side::kRight).translation;
             const Vec3 ball =

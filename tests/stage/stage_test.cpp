@@ -155,14 +155,46 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a ball that is not between the hands cannot be caught: begin says so and names the place "
+    "hands close on air where the ball is elsewhere: a warning names the place, the ball stays "
     "[unit]") {
     Hand hand(two_players());
     const auto catches = hand.add("b.getting", C::with(C::actor("catch", 1), "ball", PropIndex{0}));
     hand.open();
-    CHECK(hand.begin(catches, ms(100)).ready.ticks < 0);
-    CHECK(has(hand.stage().diagnostics(), "out-of-reach", Severity::kError));
+    const auto token = hand.begin(catches, ms(100));
+    CHECK(token.ready == ms(800));
+    CHECK(has(hand.stage().diagnostics(), "out-of-reach"));
     CHECK(hand.stage().diagnostics()[0].element == "place b.getting");
+    CHECK(!hand.stage().diagnostics()[0].remedy.empty());
+    hand.end(token, token.ready);
+    const auto p = hand.stage().finish(ms(2000));
+    CHECK(p->holder({0}, ms(1999)) == "ana.hands");
+    CHECK(inspect(*p, two_players()).off_m.value < 0.001);
+}
+
+TEST_CASE("who holds another ball does not catch, and keeps what it holds [unit]") {
+    stage::Cast cast = two_players();
+    cast.props.push_back({.name = "second", .held_by = ActorIndex{1}});
+    Hand hand(cast);
+    const auto catches = hand.add("b.getting", C::with(C::actor("catch", 1), "ball", PropIndex{0}));
+    hand.open();
+    const auto token = hand.begin(catches, ms(100));
+    hand.end(token, token.ready);
+    CHECK(has(hand.stage().diagnostics(), "hands-full"));
+    const auto p = hand.stage().finish(ms(2000));
+    CHECK(p->holder({0}, ms(1999)) == "ana.hands");
+    CHECK(p->holder({1}, ms(1999)) == "rui.hands");
+}
+
+TEST_CASE("a stroke longer than the legs is told, with the longest they can do [unit]") {
+    for (const double stroke_m : {0.7, 0.8}) {
+        Hand hand(two_players());
+        const auto step = hand.add(
+            "a.P4",
+            C::with(C::with(C::actor("step", 0), "side", motion::Side::kLeft), "stroke", stroke_m));
+        hand.open();
+        hand.begin(step, ms(100));
+        CHECK(has(hand.stage().diagnostics(), "long-stroke") == (stroke_m > 0.75));
+    }
 }
 
 TEST_CASE(
@@ -197,6 +229,27 @@ TEST_CASE(
     hand.begin(idle, ms(700));
     hand.end(b, ms(1000));
     CHECK(has(hand.stage().diagnostics(), "limb-driven-twice"));
+}
+
+TEST_CASE("a leg transferred beside a whole step is told, also the second time [unit]") {
+    Hand hand(two_players());
+    const auto step =
+        hand.add("a.step", C::with(C::actor("step", 1), "side", motion::Side::kRight));
+    const auto first = hand.add("a.first", C::limb("transfer", 1, motion::Limb::kLeftLeg)),
+               again = hand.add("a.again", C::limb("transfer", 1, motion::Limb::kLeftLeg));
+    hand.open();
+    const auto s = hand.begin(step, ms(100));
+    const auto a = hand.begin(first, ms(200));
+    hand.end(a, ms(400));
+    // The leg is the first transfer's now, but the step has not ended.
+    const auto b = hand.begin(again, ms(500));
+    hand.end(s, ms(900));
+    hand.end(b, ms(1400));
+    int told = 0;
+    for (const Diagnostic& d : hand.stage().diagnostics()) {
+        told += d.code == "limb-driven-twice";
+    }
+    CHECK(told == 2);
 }
 
 TEST_CASE("long and fast throws get a warning, at 6 m and 9 m/s [unit]") {

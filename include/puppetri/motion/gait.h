@@ -28,6 +28,8 @@ struct StepSpec {
 // The length of this movement: n or n/2. A duration that the net prescribes in the context replaces
 // it (n becomes the prescribed length, or twice it for a half step).
 double step_duration_s(const StepSpec& spec);
+// The longest stroke that this figure can walk or run; a longer one is shortened to it.
+double longest_stroke_m(const figure::Figure& figure, double duty_factor);
 
 // A step. It goes where the feet point, along the line midway between them, and begins with the
 // state of the context whatever that is: feet in the air land first where they are headed.

@@ -68,10 +68,10 @@ SimTime standing_time(double lasting_s);
 // attributes left. Gives   a movement that starts at context.at from the controls and rates of the
 // context. With a prescribed duration
 //         that is its duration, otherwise its own: a whole millisecond, rounded up, inside the
-//         interval of declared_duration.h. Warnings (carrying what another holds) come in `notes`.
-// Fails   with all reasons why this figure cannot do it now: "out-of-reach" (catching a ball that
-// is elsewhere), ...
-Checked<Prepared> prepare(const BoundCall& call, const MotionContext& context,
-                          const Surroundings& around, Diagnostics& notes);
+//         interval of declared_duration.h. What a figure cannot do (carry
+//         what another holds, catch a ball that is elsewhere, a stroke longer than its legs) it
+//         does as well as it can; a warning with the remedy comes in `notes`.
+Prepared prepare(const BoundCall& call, const MotionContext& context, const Surroundings& around,
+                 Diagnostics& notes);
 
 }  // namespace puppetri::motion
