@@ -33,6 +33,9 @@ std::vector<std::uint32_t> last_uses(const Temporal& formula) {
 }  // namespace
 
 const net::Rows<std::uint32_t>& CtlChecker::backwards() {
+    if (given_ != nullptr) {
+        return *given_;
+    }
     if (predecessors_.size() != graph_.size()) {
         predecessors_ = predecessors(graph_);
     }

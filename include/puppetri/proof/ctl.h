@@ -28,6 +28,9 @@ class CtlChecker {
  public:
     // The graph must live longer.
     explicit CtlChecker(const Graph& graph) : graph_(graph) {}
+    // With the predecessors of the graph, made by somebody else for several checkers.
+    CtlChecker(const Graph& graph, const net::Rows<std::uint32_t>& backwards)
+        : graph_(graph), given_(&backwards) {}
 
     struct Labels {
         StateBits must, may;
@@ -59,7 +62,8 @@ class CtlChecker {
     StateBits some_globally(const StateBits& a, bool past_cuts);
 
     const Graph& graph_;
-    net::Rows<std::uint32_t> predecessors_;  // empty until needed
+    const net::Rows<std::uint32_t>* given_ = nullptr;
+    net::Rows<std::uint32_t> predecessors_;  // empty until needed, or given
 };
 
 }  // namespace puppetri::proof

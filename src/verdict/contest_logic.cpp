@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+// Questions of branching and linear time: on the graph of markings where it can be made, else on
+// decision diagrams.
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "contest_session.h"
+#include "parallel.h"
+#include "puppetri/base/require.h"
+#include "puppetri/proof/buechi.h"
+#include "puppetri/proof/ctl.h"
+#include "puppetri/proof/explorer.h"
+#include "puppetri/proof/ltl.h"
+
+namespace puppetri::verdict {
+
+namespace {
+
+using proof::Predicate;
+using proof::StateSet;
+using proof::Temporal;
+using proof::Truth;
+using Op = Temporal::Op;
+
+constexpr const char* kByGraph = "EXPLICIT STATE_COMPRESSION";
+constexpr const char* kByDiagrams = "DECISION_DIAGRAMS";
+
+bool is_linear(const Temporal& t) { return t.logic == Temporal::Logic::kLtl; }
+
+// EF a, AG a, and G a on all paths, over a state formula: a question about single markings.
+struct AsReachability {
+    Predicate goal;
+    bool value_if_reached = false;
+};
+std::optional<AsReachability> as_reachability(const LogicQuestion& q) {
+    const auto& nodes = q.formula.nodes;
+    bool value = true;
+    auto at = static_cast<std::uint32_t>(nodes.size()) - 1;
+    while (nodes[at].op == Op::kNot) {
+        value = !value;
+        at = nodes[at].a;
+    }
+    // The operand: an atom or its negation.
+    const auto literal = [&](std::uint32_t i) -> std::optional<Predicate> {
+        if (nodes[i].op == Op::kAtom) {
+            return q.atoms[nodes[i].index];
+        }
+        if (nodes[i].op == Op::kNot && nodes[nodes[i].a].op == Op::kAtom) {
+            return q.atoms[nodes[nodes[i].a].index].negated();
+        }
+        return std::nullopt;
+    };
+    if (nodes[at].op == Op::kSomeUntil && nodes[nodes[at].a].op == Op::kTrue) {
+        if (std::optional<Predicate> goal = literal(nodes[at].b)) {
+            return AsReachability{std::move(*goal), value};
+        }
+    }
+    if (value && nodes[at].op == Op::kRelease && nodes[nodes[at].a].op == Op::kFalse) {
+        if (std::optional<Predicate> kept = literal(nodes[at].b)) {
+            return AsReachability{kept->negated(), false};
+        }
+    }
+    return std::nullopt;
+}
+
+// CTL on sets of markings.
+std::optional<bool> branching_by_diagrams(proof::SymbolicSpace& space, const LogicQuestion& q) {
+    std::vector<StateSet> sets;
+    for (const Temporal::Node& n : q.formula.nodes) {
+        switch (n.op) {
+            case Op::kFalse:
+                sets.push_back(space.none());
+                break;
+            case Op::kTrue:
+                sets.push_back(space.all());
+                break;
+            case Op::kAtom:
+                sets.push_back(space.satisfying(q.atoms[n.index]));
+                break;
+            case Op::kNot:
+                sets.push_back(space.complement(sets[n.a]));
+                break;
+            case Op::kAnd:
+                sets.push_back(space.both(sets[n.a], sets[n.b]));
+                break;
+            case Op::kOr:
+                sets.push_back(space.either(sets[n.a], sets[n.b]));
+                break;
+            case Op::kSomeNext:
+                sets.push_back(space.ex(sets[n.a]));
+                break;
+            case Op::kSomeGlobally:
+                sets.push_back(space.eg(sets[n.a]));
+                break;
+            case Op::kSomeUntil:
+                sets.push_back(space.eu(sets[n.a], sets[n.b]));
+                break;
+            case Op::kNext:
+            case Op::kUntil:
+            case Op::kRelease:
+                return std::nullopt;
+        }
+        if (!sets.back().known()) {
+            return std::nullopt;
+        }
+    }
+    return space.holds_initially(sets.back());
+}
+
+std::optional<bool> linear_by_diagrams(proof::SymbolicSpace& space, const LogicQuestion& q) {
+    const std::optional<proof::Buechi> wrong = proof::automaton_of(q.formula, true);
+    if (!wrong.has_value()) {
+        return std::nullopt;
+    }
+    proof::SymbolicAutomaton automaton;
+    automaton.states = wrong->size();
+    automaton.acceptance_sets = wrong->acceptance_sets;
+    automaton.initial = wrong->initial;
+    std::vector<StateSet> holds, fails;
+    for (const Predicate& atom : q.atoms) {
+        holds.push_back(space.satisfying(atom));
+        fails.push_back(space.complement(holds.back()));
+    }
+    for (std::uint32_t from = 0; from < wrong->size(); ++from) {
+        for (const proof::Buechi::Edge& e : wrong->edges.row(from)) {
+            StateSet guard = space.all();
+            for (std::uint32_t i = 0; i < q.atoms.size(); ++i) {
+                if ((e.positive >> i & 1) != 0) {
+                    guard = space.both(guard, holds[i]);
+                }
+                if ((e.negative >> i & 1) != 0) {
+                    guard = space.both(guard, fails[i]);
+                }
+            }
+            automaton.edges.push_back({from, e.target, std::move(guard), e.accepts});
+        }
+    }
+    const std::optional<bool> violated = space.accepts(automaton);
+    return violated.has_value() ? std::optional(!*violated) : std::nullopt;
+}
+
+class Logic {
+ public:
+    Logic(ContestSession& session, std::span<const LogicQuestion> questions)
+        : session_(session), questions_(questions), decisions_(questions.size()) {}
+
+    std::vector<Decision> run() {
+        by_reachability();
+        by_graph(0.6);
+        by_diagrams();
+        return std::move(decisions_);
+    }
+
+ private:
+    std::vector<std::uint32_t> open() const {
+        std::vector<std::uint32_t> list;
+        for (std::uint32_t i = 0; i < decisions_.size(); ++i) {
+            if (decisions_[i].truth == Truth::kUnknown) {
+                list.push_back(i);
+            }
+        }
+        return list;
+    }
+
+    void by_reachability() {
+        std::vector<Predicate> goals;
+        std::vector<std::pair<std::uint32_t, bool>> meaning;
+        for (std::uint32_t i = 0; i < questions_.size(); ++i) {
+            if (std::optional<AsReachability> r = as_reachability(questions_[i])) {
+                goals.push_back(std::move(r->goal));
+                meaning.emplace_back(i, r->value_if_reached);
+            }
+        }
+        const std::vector<Decision> reached = decide_reachable(session_, goals);
+        for (std::size_t k = 0; k < goals.size(); ++k) {
+            const auto [i, value_if_reached] = meaning[k];
+            decisions_[i] = reached[k];
+            if (!value_if_reached) {
+                decisions_[i].truth = proof::opposite(reached[k].truth);
+            }
+        }
+    }
+
+    void by_graph(double fraction) {
+        const std::vector<std::uint32_t> open_now = open();
+        if (open_now.empty() || session_.too_many_to_visit()) {
+            return;
+        }
+        std::vector<Predicate> atoms;
+        std::vector<std::vector<std::uint32_t>> atoms_of(questions_.size());
+        for (const std::uint32_t i : open_now) {
+            for (const Predicate& atom : questions_[i].atoms) {
+                atoms_of[i].push_back(static_cast<std::uint32_t>(atoms.size()));
+                atoms.push_back(proof::simplified(atom, session_.plain(), session_.bounds()));
+            }
+        }
+        proof::Budget budget = session_.share(fraction);
+        budget.states = ContestSession::kVisited;
+        const proof::PlainGraph made = proof::build_graph(session_.plain(), atoms, nullptr, budget);
+        const proof::Graph& graph = made.graph;
+        const net::Rows<std::uint32_t> backwards =
+            std::any_of(open_now.begin(), open_now.end(),
+                        [&](std::uint32_t i) { return !is_linear(questions_[i].formula); })
+                ? proof::predecessors(graph)
+                : net::Rows<std::uint32_t>();
+        proof::Budget rest = session_.share(0.9);
+        rest.progress = nullptr;  // several threads would tell at once
+        std::atomic<std::uint32_t> next{0};
+        in_parallel(session_.threads(), [&] {
+            proof::CtlChecker checker(graph, backwards);
+            for (;;) {
+                const std::uint32_t k = next.fetch_add(1);
+                if (k >= open_now.size()) {
+                    return;
+                }
+                const std::uint32_t i = open_now[k];
+                const Temporal& formula = questions_[i].formula;
+                const Truth truth =
+                    is_linear(formula)
+                        ? proof::check_ltl(graph, formula, atoms_of[i], rest, false).holds
+                        : checker.holds(formula, atoms_of[i], rest);
+                decisions_[i] = {truth, kByGraph};
+            }
+        });
+    }
+
+    void by_diagrams() {
+        const std::vector<std::uint32_t> open_now = open();
+        if (open_now.empty() || session_.out_of_time()) {
+            return;
+        }
+        proof::SymbolicSpace* space = session_.symbolic(0.6);
+        if (space == nullptr) {
+            return;
+        }
+        // Two rounds, so that one hard question does not eat the time of all.
+        for (const double share : {0.15, 1.0}) {
+            for (const std::uint32_t i : open()) {
+                space->renew(session_.share(share));
+                const LogicQuestion& q = questions_[i];
+                const std::optional<bool> holds = is_linear(q.formula)
+                                                      ? linear_by_diagrams(*space, q)
+                                                      : branching_by_diagrams(*space, q);
+                if (holds.has_value()) {
+                    decisions_[i] = {proof::truth_of(*holds), kByDiagrams};
+                }
+            }
+        }
+    }
+
+    ContestSession& session_;
+    std::span<const LogicQuestion> questions_;
+    std::vector<Decision> decisions_;
+};
+
+}  // namespace
+
+std::vector<Decision> decide_logic(ContestSession& session,
+                                   std::span<const LogicQuestion> questions) {
+    return Logic(session, questions).run();
+}
+
+}  // namespace puppetri::verdict

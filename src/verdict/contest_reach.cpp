@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+// Questions about single markings: which can be reached, which are dead, how large a sum gets.
+#include <algorithm>
+#include <utility>
+
+#include "contest_session.h"
+#include "puppetri/proof/explorer.h"
+#include "puppetri/proof/random_walk.h"
+#include "puppetri/proof/reductions.h"
+#include "puppetri/proof/state_equation.h"
+#include "puppetri/proof/structural_liveness.h"
+
+namespace puppetri::verdict {
+
+namespace {
+
+using proof::Ended;
+using proof::Predicate;
+using proof::Truth;
+
+constexpr const char* kByStructure = "TOPOLOGICAL";
+constexpr const char* kByWalk = "RANDOM_WALK EXPLICIT";
+constexpr const char* kByEquation = "STATE_EQUATION TOPOLOGICAL";
+constexpr const char* kByExploration = "EXPLICIT STATE_COMPRESSION";
+constexpr const char* kByDiagrams = "DECISION_DIAGRAMS";
+constexpr const char* kByReduction =
+    "EXPLICIT STRUCTURAL_REDUCTION STUBBORN_SETS STATE_COMPRESSION";
+
+// Goals that are not decided yet.
+class OpenGoals {
+ public:
+    explicit OpenGoals(std::span<const Predicate> goals)
+        : goals_(goals.begin(), goals.end()), decisions_(goals.size()) {
+        for (std::uint32_t i = 0; i < goals.size(); ++i) {
+            open_.push_back(i);
+        }
+    }
+    bool empty() const { return open_.empty(); }
+    std::vector<Predicate> list() const {
+        std::vector<Predicate> list;
+        for (const std::uint32_t i : open_) {
+            list.push_back(goals_[i]);
+        }
+        return list;
+    }
+    Predicate& operator[](std::uint32_t i) { return goals_[open_[i]]; }
+    std::uint32_t count() const { return static_cast<std::uint32_t>(open_.size()); }
+    // decide(i) gives what is known now of the i-th open goal.
+    template <class Decide>
+    void decide(const char* techniques, Decide&& decide) {
+        std::vector<std::uint32_t> left;
+        for (std::uint32_t i = 0; i < open_.size(); ++i) {
+            const Truth truth = decide(i);
+            if (truth == Truth::kUnknown) {
+                left.push_back(open_[i]);
+            } else {
+                decisions_[open_[i]] = {truth, techniques};
+            }
+        }
+        open_ = std::move(left);
+    }
+    std::vector<Decision> take() { return std::move(decisions_); }
+
+ private:
+    std::vector<Predicate> goals_;
+    std::vector<Decision> decisions_;
+    std::vector<std::uint32_t> open_;
+};
+
+void explore_for(ContestSession& session, OpenGoals& open, const proof::Budget& budget) {
+    const std::vector<Predicate> goals = open.list();
+    proof::ExploreOptions options;
+    options.goals = goals;
+    options.stop_when_found = true;
+    const proof::Exploration e = proof::explore(session.plain(), options, budget);
+    const bool all_seen = e.ended == Ended::kDone && e.complete;
+    open.decide(kByExploration, [&](std::uint32_t i) {
+        return e.goals[i].found ? Truth::kTrue : all_seen ? Truth::kFalse : Truth::kUnknown;
+    });
+}
+
+void ask_diagrams(proof::SymbolicSpace* space, OpenGoals& open, const ContestSession& session) {
+    if (space == nullptr) {
+        return;
+    }
+    space->renew(session.share(0.6));
+    open.decide(kByDiagrams, [&](std::uint32_t i) {
+        const std::optional<bool> none = space->empty(space->satisfying(open[i]));
+        return none.has_value() ? proof::truth_of(!*none) : Truth::kUnknown;
+    });
+}
+
+// An enabled transition in every marking, by theorem.
+bool never_dead_by_structure(ContestSession& session) {
+    return proof::structural_liveness(session.plain(), session.share(0.1, 0.2)).deadlock_free;
+}
+
+void decide_without_states(ContestSession& session, OpenGoals& open) {
+    for (std::uint32_t i = 0; i < open.count(); ++i) {
+        open[i] = proof::simplified(open[i], session.plain(), session.bounds());
+    }
+    open.decide(kByStructure, [&](std::uint32_t i) {
+        return open[i].is_constant(true)    ? Truth::kTrue
+               : open[i].is_constant(false) ? Truth::kFalse
+                                            : Truth::kUnknown;
+    });
+    if (!open.empty()) {
+        const std::vector<Predicate> list = open.list();
+        proof::WalkOptions options;
+        options.goals = list;
+        const proof::WalkOutcome walk =
+            proof::walk_at_random(session.plain(), options, session.share(0.1, 1));
+        open.decide(kByWalk, [&](std::uint32_t i) {
+            return walk.met[i] != 0 ? Truth::kTrue : Truth::kUnknown;
+        });
+    }
+    const proof::Budget each = session.share(0.05 / std::max(1u, open.count()), 0.3);
+    open.decide(kByEquation, [&](std::uint32_t i) {
+        return proof::solve_state_equation(session.plain(), open[i], each).kind ==
+                       proof::StateEquationAnswer::kImpossible
+                   ? Truth::kFalse
+                   : Truth::kUnknown;
+    });
+}
+
+}  // namespace
+
+std::vector<Decision> decide_reachable_quickly(ContestSession& session,
+                                               std::span<const Predicate> goals) {
+    OpenGoals open(goals);
+    decide_without_states(session, open);
+    return open.take();
+}
+
+std::vector<Decision> decide_reachable(ContestSession& session, std::span<const Predicate> goals) {
+    OpenGoals open(goals);
+    decide_without_states(session, open);
+    if (!open.empty()) {
+        proof::Budget few = session.share(0.3);
+        few.states = 200'000;
+        explore_for(session, open, few);
+    }
+    if (!open.empty() && session.too_many_to_visit()) {
+        ask_diagrams(session.quick_symbolic(), open, session);
+    }
+    if (!open.empty()) {
+        explore_for(session, open, session.share(0.5));
+    }
+    if (!open.empty()) {
+        ask_diagrams(session.symbolic(0.7), open, session);
+    }
+    if (!open.empty() && !session.out_of_time()) {
+        explore_for(session, open, session.share(1));
+    }
+    return open.take();
+}
+
+Decision decide_dead(ContestSession& session) {
+    if (never_dead_by_structure(session)) {
+        return {Truth::kFalse, kByStructure};
+    }
+    proof::WalkOptions walk;
+    walk.steps = 20'000;
+    walk.find_dead = true;
+    if (proof::walk_at_random(session.plain(), walk, session.share(0.1, 0.2)).met_dead) {
+        return {Truth::kTrue, kByWalk};
+    }
+    proof::ReductionGoal goal;
+    goal.preserves = proof::Preserves::kDeadlock;
+    const proof::Reduction reduced = proof::reduce(session.plain(), goal, session.share(0.2, 2));
+    proof::ExploreOptions options;
+    options.find_dead = true;
+    options.stop_when_found = true;
+    options.reduce = true;
+    const auto explored = [&](const proof::Budget& budget) {
+        const proof::Exploration e = proof::explore(reduced.net, options, budget);
+        return e.dead.found                            ? Truth::kTrue
+               : e.ended == Ended::kDone && e.complete ? Truth::kFalse
+                                                       : Truth::kUnknown;
+    };
+    proof::Budget few = session.share(0.5);
+    few.states = 3'000'000;
+    Truth truth = explored(few);
+    if (truth != Truth::kUnknown) {
+        return {truth, kByReduction};
+    }
+    if (proof::SymbolicSpace* space = session.symbolic(0.5)) {
+        space->renew(session.share(0.8));
+        const std::optional<bool> none = space->empty(space->stuck());
+        if (none.has_value()) {
+            return {proof::truth_of(!*none), kByDiagrams};
+        }
+    }
+    if (!session.out_of_time()) {
+        truth = explored(session.share(1));
+    }
+    return {truth, kByReduction};
+}
+
+std::vector<Maximum> decide_maxima(ContestSession& session,
+                                   std::span<const proof::LinearSum> sums) {
+    std::vector<Maximum> result(sums.size());
+    std::vector<std::optional<std::int64_t>> most(sums.size());
+    proof::WalkOptions options;
+    options.sums = sums;
+    options.steps = 50'000;
+    const proof::WalkOutcome walk =
+        proof::walk_at_random(session.plain(), options, session.share(0.1, 1));
+    std::vector<std::int64_t> least = walk.greatest;
+    const auto settle = [&](std::size_t i, const char* techniques) {
+        if (!result[i].value.has_value() && most[i].has_value() && *most[i] <= least[i]) {
+            result[i] = {least[i], techniques};
+        }
+    };
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        most[i] = proof::upper_bound(session.plain(), sums[i], session.share(0.02, 0.3));
+        settle(i, kByEquation);
+    }
+    const auto open = [&] {
+        return std::any_of(result.begin(), result.end(),
+                           [](const Maximum& m) { return !m.value.has_value(); });
+    };
+    const auto ask = [&](proof::SymbolicSpace* space) {
+        if (space == nullptr) {
+            return;
+        }
+        space->renew(session.share(0.6));
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            if (result[i].value.has_value()) {
+                continue;
+            }
+            const std::optional<std::int64_t> value = space->max_of(sums[i], space->all());
+            if (value.has_value()) {
+                result[i] = {value, kByDiagrams};
+            }
+        }
+    };
+    if (open()) {
+        ask(session.quick_symbolic());
+    }
+    // Exploration gives the greatest count of each place; of other sums, whether more than was seen
+    // can be reached, one round after another.
+    for (int round = 0; round < 64 && open() && !session.out_of_time(); ++round) {
+        std::vector<Predicate> goals;
+        std::vector<std::size_t> goal_of;
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            const bool one_place = sums[i].terms.size() == 1 && sums[i].terms[0].factor == 1;
+            if (!result[i].value.has_value() && !one_place) {
+                goals.push_back(Predicate::at_least(sums[i], least[i] + 1));
+                goal_of.push_back(i);
+            }
+        }
+        proof::ExploreOptions search;
+        search.goals = goals;
+        const proof::Exploration e = proof::explore(session.plain(), search, session.share(0.5));
+        if (e.ended != Ended::kDone || !e.complete) {
+            break;
+        }
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            if (!result[i].value.has_value() && sums[i].terms.size() == 1 &&
+                sums[i].terms[0].factor == 1) {
+                result[i] = {std::int64_t{e.bounds[sums[i].terms[0].place]}, kByExploration};
+            }
+        }
+        for (std::size_t k = 0; k < goals.size(); ++k) {
+            const std::size_t i = goal_of[k];
+            if (!e.goals[k].found) {
+                result[i] = {least[i], kByExploration};
+                continue;
+            }
+            std::int64_t value = 0;
+            for (const proof::LinearSum::Term& term : sums[i].terms) {
+                value += term.factor * std::int64_t{e.goals[k].marking[term.place]};
+            }
+            least[i] = std::max(least[i] + 1, value);
+            settle(i, kByExploration);
+        }
+    }
+    if (open() && !session.out_of_time()) {
+        ask(session.symbolic(0.8));
+    }
+    return result;
+}
+
+}  // namespace puppetri::verdict
