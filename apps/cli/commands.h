@@ -16,6 +16,7 @@ Command draw_command();
 Command export_command();
 Command render_command();
 Command convert_command();
+Command query_command();
 
 // In the order of the help.
 std::vector<Command> all_commands();
