@@ -147,7 +147,11 @@ class Logic {
 
     std::vector<Decision> run() {
         by_reachability();
-        by_graph(0.6);
+        // A part of the graph shows many a counterexample, and small graphs are done with it.
+        by_graph(0.2, kGlance);
+        if (!open().empty() && !session_.too_many_to_visit()) {
+            by_graph(0.6, ContestSession::kVisited);
+        }
         by_diagrams();
         return std::move(decisions_);
     }
@@ -182,9 +186,11 @@ class Logic {
         }
     }
 
-    void by_graph(double fraction) {
+    static constexpr std::uint64_t kGlance = 100'000;  // states
+
+    void by_graph(double fraction, std::uint64_t states) {
         const std::vector<std::uint32_t> open_now = open();
-        if (open_now.empty() || session_.too_many_to_visit()) {
+        if (open_now.empty()) {
             return;
         }
         std::vector<Predicate> atoms;
@@ -196,7 +202,7 @@ class Logic {
             }
         }
         proof::Budget budget = session_.share(fraction);
-        budget.states = ContestSession::kVisited;
+        budget.states = states;
         const proof::PlainGraph made = proof::build_graph(session_.plain(), atoms, nullptr, budget);
         const proof::Graph& graph = made.graph;
         const net::Rows<std::uint32_t> backwards =
@@ -204,7 +210,7 @@ class Logic {
                         [&](std::uint32_t i) { return !is_linear(questions_[i].formula); })
                 ? proof::predecessors(graph)
                 : net::Rows<std::uint32_t>();
-        proof::Budget rest = session_.share(0.9);
+        proof::Budget rest = session_.share(fraction);
         rest.progress = nullptr;  // several threads would tell at once
         std::atomic<std::uint32_t> next{0};
         in_parallel(session_.threads(), [&] {
