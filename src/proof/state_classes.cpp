@@ -84,39 +84,6 @@ class Race final : public ClassBuilder {
     std::vector<std::uint64_t> may_, must_;
 };
 
-// Some run never gets to a state of the set: it ends before, or there is a cycle without one.
-bool can_avoid(const Graph& g, const std::vector<bool>& wanted) {
-    if (wanted[g.initial]) {
-        return false;
-    }
-    // Depth first; a state that is still open and met again closes a cycle.
-    std::vector<std::uint8_t> state(g.size(), 0);  // 1 open, 2 done
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> stack = {
-        {g.initial, g.edges.starts[g.initial]}};
-    state[g.initial] = 1;
-    while (!stack.empty()) {
-        auto& [s, e] = stack.back();
-        if (g.dead(s) || (g.flags[s] & (Graph::kCut | Graph::kOptional)) != 0) {
-            return true;
-        }
-        if (e == g.edges.starts[s + 1]) {
-            state[s] = 2;
-            stack.pop_back();
-            continue;
-        }
-        const std::uint32_t t = g.edges.items[e++].target;
-        if (wanted[t] || state[t] == 2) {
-            continue;
-        }
-        if (state[t] == 1) {
-            return true;
-        }
-        state[t] = 1;
-        stack.emplace_back(t, g.edges.starts[t]);
-    }
-    return false;
-}
-
 }  // namespace
 
 std::optional<Extremes> extreme_times(const GraphRequest& request, const Formula& wanted) {
@@ -133,11 +100,8 @@ std::optional<Extremes> extreme_times(const GraphRequest& request, const Formula
     }
     Extremes e;
     e.ended = classes.graph.ended;
-    std::vector<bool> set(classes.graph.size());
-    for (std::uint32_t s = 0; s < set.size(); ++s) {
-        set[s] = classes.graph.atoms.may_hold(s, 0);
-        e.reachable = e.reachable || set[s];
-    }
+    const StateBits set = states_where_atom_may(classes.graph, 0);
+    e.reachable = !set.empty();
     if (e.ended != Ended::kDone || !e.reachable) {
         return e;
     }

@@ -12,6 +12,7 @@
 #include "atom_reader.h"
 #include "byte_store.h"
 #include "driver.h"
+#include "puppetri/proof/graph_algorithms.h"
 #include "puppetri/proof/timed_graph.h"
 #include "state_codec.h"
 
@@ -47,6 +48,9 @@ std::string time_in_words(std::int64_t ticks);
 bool plays(const World& world, const Script& script, std::string* trouble);
 std::optional<Script> class_script(const TimedGraph& graph, std::span<const std::uint32_t> path,
                                    std::string* trouble);
+
+// Some run never gets to a state of the set: it ends or stops before, or goes round for ever.
+bool can_avoid(const Graph& graph, const StateBits& wanted);
 
 class TimedBuilder {
  public:

@@ -357,6 +357,64 @@ TEST_CASE("no run leaves the readiness graph [law]") {
     CHECK(compared * 3 > nets);
 }
 
+TEST_CASE("no run leaves the plain untimed picture, priorities and all [law]") {
+    const std::uint64_t nets = nets_to_try(1000);
+    std::uint64_t compared = 0, firings = 0, failures = 0, unsound = 0, levels = 0;
+    for (std::uint64_t i = 0; i < nets && failures < 3; ++i) {
+        RandomStream stream = series(15, i);
+        const net::NetDraft draft = random_net(stream);
+        const Checked<net::Net> net = net::compile(draft);
+        if (!net.has_value()) {
+            continue;
+        }
+        const Plain picture = plain(*net);
+        if (picture.unsound) {
+            ++unsound;
+            continue;
+        }
+        ++compared;
+        const PlainNet& p = picture.net;
+        levels += p.has_levels ? 1 : 0;
+        const auto check = [&](const Played& played) {
+            Marking marking = p.initial;
+            for (std::size_t k = 0; k < played.firings.size(); ++k) {
+                const Firing& f = played.firings[k];
+                if (f.after.numbers.empty()) {
+                    return;  // it stopped here
+                }
+                bool fine = p.enabled(marking, f.transition);
+                for (std::uint32_t t = 0; p.has_levels && t < p.transition_count(); ++t) {
+                    fine = fine && (p.level[t] <= p.level[f.transition] || !p.enabled(marking, t));
+                }
+                fine = fine && p.fire(marking, f.transition);
+                for (std::uint32_t q = 0; q < p.place_count(); ++q) {
+                    fine = fine && marking[q] == f.after.numbers[2 * q];
+                }
+                if (!fine) {
+                    if (++failures <= 3) {
+                        FAIL_CHECK("net " << i << "\n"
+                                          << show(draft) << played.text() << "\nfiring " << k);
+                    }
+                    return;
+                }
+                ++firings;
+            }
+        };
+        net::ExhaustiveChooser all;
+        std::size_t tries = 0;
+        do {
+            check(play(*net, all));
+        } while (all.next() && ++tries < 50 && failures < 3);
+        net::RandomChooser random;
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+            check(play(*net, random, seed, 30, 40 * kRandomNetUnit));
+        }
+    }
+    MESSAGE(compared << " nets, " << firings << " firings followed, " << unsound << " unsound, "
+                     << levels << " with levels");
+    CHECK(compared * 3 > nets);
+}
+
 TEST_CASE("with single durations state classes have exactly the runs of timed exact [agree]") {
     const std::uint64_t nets = nets_to_try(150);
     std::uint64_t compared = 0, runs = 0, failures = 0, refused = 0;

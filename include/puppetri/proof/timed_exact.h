@@ -4,6 +4,10 @@
 // durations are single numbers; of intervals and distributions only some points are tried, so the
 // graph misses runs, but whatever it has is a run.
 #pragma once
+#include <cstdint>
+#include <optional>
+
+#include "puppetri/proof/graph_algorithms.h"
 #include "puppetri/proof/timed_graph.h"
 
 namespace puppetri::proof {
@@ -16,23 +20,30 @@ TimedGraph timed_exact_graph(const GraphRequest& request);
 
 // The shortest and the longest time from the initial state until a state of the set is entered
 // first, and whether it can be avoided for ever. From the ticks on the edges of an exact timed
-// graph. Needs  graph.low_ticks; `wanted` has one entry per state.
+// graph.
+// Needs  ticks on the edges; all states expanded. Of a path that stops (graph.stops) it is said
+//        that it avoids the set.
+// Cost   O(edges log edges).
 struct TimeToReach {
     bool reachable = false;
     bool avoidable = false;  // some run never gets there (it ends before, or goes round for ever)
     std::int64_t shortest = 0;
-    std::int64_t longest = 0;                                // never: without bound (avoidable)
-    std::vector<std::uint32_t> shortest_path, longest_path;  // edges
+    std::int64_t longest = 0;  // never: without bound (avoidable)
+    Path shortest_path, longest_path;
 };
-TimeToReach time_to_reach(const Graph& graph, const std::vector<bool>& wanted);
+TimeToReach time_to_reach(const Graph& graph, const StateBits& wanted);
 
-// The least and the greatest mean time per visit of the states of the set, over all cycles through
-// one: how long a round takes. Nothing if no cycle goes through one.
-// Source  R. M. Karp, A characterization of the minimum cycle mean in a digraph (1978), for the
-//         cycle ratio by binary search with Bellman-Ford (Lawler 1976).
+// The least and the greatest mean time per visit of a state of the set, over all that goes round
+// for ever and visits again and again: how long a round takes.
+// Needs  exact ticks on the edges.
+// Gives  nothing if no cycle has a visit; greatest is infinite if the visits may become ever rarer.
+// Cost   O(states * edges) per improvement, few of them.
+// Source  W. Dinkelbach, On nonlinear fractional programming (1967), for the ratio of cycles;
+//         exact in whole numbers.
 struct CycleTime {
-    double least = 0, greatest = 0;  // ticks per visit
+    double least_s = 0, greatest_s = 0;
+    Path least_cycle, greatest_cycle;  // the latter empty if infinite
 };
-std::optional<CycleTime> cycle_time(const Graph& graph, const std::vector<bool>& visits);
+std::optional<CycleTime> cycle_time(const Graph& graph, const StateBits& visits);
 
 }  // namespace puppetri::proof
