@@ -39,7 +39,8 @@ Exploration explore(const PlainNet& net, const ExploreOptions& options, const Bu
     out.reduced =
         options.reduce && !net.has_levels && (options.find_dead || !options.goals.empty());
     if (out.reduced) {
-        search.stubborn = std::make_unique<const Stubborn>(net, options.goals, options.find_dead);
+        search.stubborn =
+            std::make_unique<const Stubborn>(net, options.goals, options.find_dead, options.final);
     }
     // What is to be found soon is looked for in the depth, unless the way there should be short.
     const bool depth_first = options.stop_when_found && !options.witnesses;

@@ -29,9 +29,10 @@ namespace puppetri::proof {
 //         reachability games, LMCS 17 (2021), with inhibitors.
 class Stubborn {
  public:
-    // With `dead` the markings in which no transition is enabled that is not optional are goals
-    // too. The net outlives it.
-    Stubborn(const PlainNet& net, std::span<const Predicate> goals, bool dead);
+    // With `dead` the markings in which no transition is enabled that is not optional, and `final`
+    // (if there is one) does not hold, are goals too. The net outlives it.
+    Stubborn(const PlainNet& net, std::span<const Predicate> goals, bool dead,
+             const Predicate* final);
     ~Stubborn();
 
     // One per thread.
@@ -39,6 +40,7 @@ class Stubborn {
         std::vector<std::uint32_t> in_set;  // per transition: stamp
         std::vector<std::uint32_t> members;
         std::vector<std::uint32_t> best;
+        std::vector<std::uint64_t> kept;
         std::uint32_t stamp = 0;
     };
     // Makes the set of enabled transitions smaller where that is possible. The same marking gives

@@ -50,15 +50,20 @@ class Worker {
             if (!reserve()) {
                 break;
             }
-            const std::uint32_t id = own_.stack.back();
-            if (!expand(id)) {
-                if (!widen_alone()) {
-                    return;
+            // Some states together, so that there is something to fetch ahead.
+            bool narrow = false;
+            while (!own_.stack.empty() && count_ < kDeepBatch && !narrow) {
+                const std::uint32_t id = own_.stack.back();
+                own_.stack.pop_back();
+                narrow = !expand(id);
+                if (narrow) {
+                    own_.stack.push_back(id);
                 }
-                continue;
             }
-            own_.stack.pop_back();
             resolve();
+            if (narrow && !widen_alone()) {
+                return;
+            }
             tell();
         }
         note_fill();
@@ -95,7 +100,7 @@ class Worker {
     }
 
  private:
-    static constexpr std::uint32_t kBatch = 192;
+    static constexpr std::uint32_t kBatch = 192, kDeepBatch = 48;
     static constexpr std::uint32_t kAhead = 8;
 
     std::uint32_t words() const { return kWords != 0 ? kWords : words_; }

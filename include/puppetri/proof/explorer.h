@@ -66,6 +66,13 @@ struct Exploration {
 // Cost   5 to 16 bytes per state for most nets, 20 to 100 ns per edge.
 Exploration explore(const PlainNet& net, const ExploreOptions& options, const Budget& budget);
 
+// Answers whether the goals (and a dead marking, with find_dead) are reachable, as soon as it can:
+// walks towards few enabled transitions, a search with stubborn sets as long as it stays small, a
+// search of everything, and where that is too much, one with stubborn sets again. Found is found,
+// also by a walk; `complete` says that what was not found is not there. `stop_when_found` and
+// `reduce` are set by it; counts are those of the last search.
+Exploration seek(const PlainNet& net, const ExploreOptions& options, const Budget& budget);
+
 struct PlainStates;  // the packed markings of a graph
 
 // The whole graph with its states, numbered in the order in which breadth-first search finds them;
