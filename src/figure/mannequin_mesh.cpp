@@ -211,7 +211,26 @@ void settle_normals(Contour& body) {
     }
 }
 
+std::vector<Material> materials_of(const Palette& palette) {
+    return {{"skin", palette.skin, 0.62f, 0},
+            {"hair", palette.hair, 0.55f, 0},
+            {"shirt", palette.main, 0.8f, 0},
+            {"trousers", palette.second, 0.85f, 0},
+            {"shoes", palette.accent, 0.5f, 0}};
+}
+
 }  // namespace
+
+Mesh fit_mannequin_mesh(Mesh mesh, double ratio, const Palette& palette) {
+    PUP_REQUIRE(ratio > 0);
+    for (std::array<float, 3>& p : mesh.positions) {
+        for (float& x : p) {
+            x = static_cast<float>(x * ratio);
+        }
+    }
+    mesh.materials = materials_of(palette);
+    return mesh;
+}
 
 Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
     PUP_REQUIRE(skeleton.height_m > 0);
@@ -227,11 +246,7 @@ Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette) {
     const SkinWeights weights(skeleton, marks);
 
     Mesh mesh;
-    mesh.materials = {{"skin", palette.skin, 0.62f, 0},
-                      {"hair", palette.hair, 0.55f, 0},
-                      {"shirt", palette.main, 0.8f, 0},
-                      {"trousers", palette.second, 0.85f, 0},
-                      {"shoes", palette.accent, 0.5f, 0}};
+    mesh.materials = materials_of(palette);
     const std::size_t n = body.positions_model.size();
     mesh.positions.reserve(n);
     mesh.normals.reserve(n);

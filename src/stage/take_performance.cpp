@@ -3,6 +3,7 @@
 #include "take_performance.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "puppetri/figure/mannequin_mesh.h"
 #include "puppetri/figure/prop_mesh.h"
@@ -48,14 +49,22 @@ class TakePerformance final : public Performance {
             tracks.push_back(make_gaze_track(take_, ActorIndex{i}));
         }
         actor_meshes_.reserve(take_.actors.size());
+        std::optional<std::size_t> first_mannequin;
         for (std::size_t i = 0; i < take_.actors.size(); ++i) {
             take_.actors[i].gaze_track = std::move(tracks[i]);
             const Actor& actor = take_.cast.actors[i];
             const figure::Skeleton& skeleton = take_.actors[i].figure->skeleton;
             const figure::Palette& palette = palette_named(actor.palette);
-            actor_meshes_.push_back(actor.body == BodyKind::kStick
-                                        ? figure::make_stick_mesh(skeleton, palette)
-                                        : figure::make_mannequin_mesh(skeleton, palette));
+            if (actor.body == BodyKind::kStick) {
+                actor_meshes_.push_back(figure::make_stick_mesh(skeleton, palette));
+            } else if (!first_mannequin) {
+                first_mannequin = i;
+                actor_meshes_.push_back(figure::make_mannequin_mesh(skeleton, palette));
+            } else {  // the skin is made once
+                actor_meshes_.push_back(figure::fit_mannequin_mesh(
+                    actor_meshes_[*first_mannequin],
+                    actor.height_m / take_.cast.actors[*first_mannequin].height_m, palette));
+            }
             actor_views_.push_back({actor.name, &skeleton, &actor_meshes_[i]});
         }
         prop_meshes_.reserve(take_.props.size());

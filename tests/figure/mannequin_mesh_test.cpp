@@ -48,6 +48,28 @@ std::vector<std::array<float, 3>> skinned(const Body& b, const Pose& pose) {
 
 }  // namespace
 
+TEST_CASE("a mesh fitted to another height is the mesh made for it [agree]") {
+    const Body small = body(1.5), tall = body(1.9);
+    const Mesh fitted = fit_mannequin_mesh(small.mesh, 1.9 / 1.5, *find_palette("teal"));
+    REQUIRE(fitted.positions.size() == tall.mesh.positions.size());
+    // Rounding may turn a diagonal where both are as good.
+    REQUIRE(fitted.triangles.size() == tall.mesh.triangles.size());
+    std::size_t other = 0;
+    for (std::size_t t = 0; t < fitted.triangles.size(); ++t) {
+        other += fitted.triangles[t] != tall.mesh.triangles[t];
+    }
+    CHECK(other < fitted.triangles.size() / 200);
+    CHECK(closed_manifold(fitted));
+    double worst_m = 0;
+    for (std::size_t v = 0; v < fitted.positions.size(); ++v) {
+        worst_m =
+            std::fmax(worst_m, length(vec(fitted.positions[v]) - vec(tall.mesh.positions[v])));
+    }
+    CHECK(worst_m < 1e-6);
+    const Mesh amber = fit_mannequin_mesh(small.mesh, 1, *find_palette("amber"));
+    CHECK(amber.materials[2].base_colour == find_palette("amber")->main);
+}
+
 TEST_CASE("the mannequin is one closed surface without handles, at any height [law]") {
     for (const double h : {1.2, 1.5, 1.68, 1.75, 1.9, 2.1}) {
         CAPTURE(h);

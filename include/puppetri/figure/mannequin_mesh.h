@@ -16,7 +16,11 @@ namespace puppetri::figure {
 // vertex with sum 1; one part
 //         per material (skin, hair, shirt, trousers, shoes). Left and right are mirror images. The
 //         soles touch y = 0 and the crown height_m, within 1 % of the height.
-// Cost    about 15 ms; memory a few MB while it works.
+// Cost    15 to 40 ms; memory a few MB while it works.
 Mesh make_mannequin_mesh(const Skeleton& skeleton, const Palette& palette);
+
+// The same skin for a mannequin that is `ratio` times as high: mannequins are similar figures.
+// Gives what make_mannequin_mesh would make for it, up to rounding. Cost    a copy.
+Mesh fit_mannequin_mesh(Mesh mesh, double ratio, const Palette& palette);
 
 }  // namespace puppetri::figure
