@@ -17,7 +17,7 @@ namespace puppetri::proof {
 
 namespace {
 
-constexpr std::uint64_t kPivotsPerLook = 200;
+constexpr std::uint64_t kPivotsPerLook = 40;
 constexpr double kStructuralShare = 0.2;  // of the budget's seconds
 
 // Some y >= 1 with y C <= 0: then y m <= y m0 for ever. With sums that only fall the net is bounded

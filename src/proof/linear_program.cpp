@@ -95,6 +95,7 @@ struct LinearProgram::Tableau {
     std::vector<Reason> reasons;
     std::uint32_t crossed = kNone;  // a variable whose bounds exclude each other
     bool broken = false;            // a number did not fit
+    std::uint64_t effort = 0;       // pivots since the bounds last changed
     std::vector<Entry> scratch;
 
     std::uint32_t add() {
@@ -263,8 +264,8 @@ struct LinearProgram::Tableau {
             }
         }
         const std::uint64_t patience = 100 + 2 * rows.size();
-        for (std::uint64_t count = 0;; ++count) {
-            const bool bland = count > patience;
+        for (std::uint64_t count = 0;; ++count, ++effort) {
+            const bool bland = effort > patience;
             std::uint32_t leaving = kNone;
             double farthest = -1;
             for (std::uint32_t r = 0; r < rows.size(); ++r) {
@@ -431,6 +432,7 @@ struct LinearProgram::Tableau {
     }
 
     void bound(std::uint32_t variable, bool upper, std::int64_t limit, bool always = false) {
+        effort = 0;
         std::int64_t& now = upper ? high[variable] : low[variable];
         if (upper ? limit >= now : limit <= now) {
             return;
@@ -525,6 +527,7 @@ void LinearProgram::push() {
 
 void LinearProgram::pop() {
     Tableau& t = *tableau_;
+    t.effort = 0;
     while (t.trail.size() > t.levels.back()) {
         const Tableau::Trail& change = t.trail.back();
         (change.upper ? t.high : t.low)[change.variable] = change.before;

@@ -23,7 +23,7 @@ namespace puppetri::proof {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr std::uint64_t kPivotsPerLook = 200;
+constexpr std::uint64_t kPivotsPerLook = 40;
 constexpr std::uint32_t kDeepest = 4000;
 constexpr std::uint32_t kMostTraps = 2000;
 
@@ -305,7 +305,7 @@ class Search {
         LinearProgram::Value best;
         ++answer_.programs;
         const auto answer =
-            program_.program.maximize(program_.change(p), 10 * kPivotsPerLook, best);
+            program_.program.maximize(program_.change(p), 50 * kPivotsPerLook, best);
         if (answer != LinearProgram::Answer::kFeasible || best.numerator < -(1ll << 40) ||
             best.numerator > 1ll << 40) {
             return -1;

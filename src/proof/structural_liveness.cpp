@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "disjoint_sets.h"
+#include "puppetri/proof/complement.h"
 #include "puppetri/proof/components.h"
 #include "puppetri/proof/linear_program.h"
 #include "puppetri/proof/net_class.h"
@@ -15,7 +16,7 @@ namespace puppetri::proof {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr std::uint64_t kPivotsPerLook = 200;
+constexpr std::uint64_t kPivotsPerLook = 40;
 
 // The input places of a transition, reads among them.
 template <class Visit>
@@ -199,7 +200,15 @@ StructuralLiveness judge(const PlainNet& net, const Budget& budget) {
 
 StructuralLiveness structural_liveness(const PlainNet& net, const Budget& budget) {
     StructuralLiveness out;
-    if (net.has_inhibitors() || net.has_levels || net.transition_count() == 0 ||
+    if (net.has_inhibitors()) {
+        const auto same = without_inhibitors(net, budget);
+        if (same) {
+            out = structural_liveness(*same, budget);
+            std::erase_if(out.unmarked, [&](std::uint32_t p) { return p >= net.place_count(); });
+        }
+        return out;
+    }
+    if (net.has_levels || net.transition_count() == 0 ||
         std::find(net.optional.begin(), net.optional.end(), 1) != net.optional.end()) {
         return out;
     }

@@ -16,6 +16,7 @@
 #include "disjoint_sets.h"
 #include "puppetri/base/distribution.h"
 #include "puppetri/net/tables.h"
+#include "puppetri/proof/complement.h"
 #include "puppetri/proof/semiflows.h"
 #include "puppetri/proof/structural_liveness.h"
 
@@ -46,6 +47,9 @@ class Check {
             }
             if (tables_.place[p].kind != net::PlaceKind::kCount) {
                 for (const net::Watcher& w : tables_.total_watchers(p)) {
+                    if (w.inhibits()) {
+                        continue;  // told by the complement
+                    }
                     return transition(w.transition()) + " looks at tokens of " + place(p) +
                            " that are not ready";
                 }
@@ -63,7 +67,7 @@ class Check {
     bool every_circuit_takes_time() const {
         // Transitions joined through places that take no time must not form a ring.
         const std::uint32_t count = net_.transition_count();
-        std::vector<std::vector<std::uint32_t>> next(count), consumers(net_.place_count());
+        std::vector<std::vector<std::uint32_t>> next(count), consumers(picture_.place_count());
         std::vector<std::uint32_t> waits(count, 0);
         for (std::uint32_t t = 0; t < count; ++t) {
             for (const net::Weighted& w : picture_.takes.row(t)) {
@@ -72,7 +76,8 @@ class Check {
         }
         for (std::uint32_t t = 0; t < count; ++t) {
             for (const net::Weighted& w : picture_.gives.row(t)) {
-                const std::uint32_t d = tables_.place[w.place].duration;
+                const std::uint32_t d =
+                    w.place < net_.place_count() ? tables_.place[w.place].duration : net::kNoIndex;
                 if (d != net::kNoIndex && tables_.durations[d].kind == DurationKind::kConstant &&
                     tables_.durations[d].ticks > 0) {
                     continue;
@@ -186,7 +191,7 @@ class Check {
 
     // Where there is a choice, it is free.
     std::string clusters() const {
-        const std::uint32_t places = net_.place_count(), count = net_.transition_count();
+        const std::uint32_t places = picture_.place_count(), count = net_.transition_count();
         DisjointSets sets(places + count);
         for (std::uint32_t t = 0; t < count; ++t) {
             for (const auto* rows : {&picture_.takes, &picture_.reads}) {

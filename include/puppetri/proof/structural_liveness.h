@@ -23,8 +23,9 @@ struct StructuralLiveness {
     PlaceSet unmarked;  // of not_live: the circuit's places or the siphon that can be empty
 };
 
-// For the plain untimed net. Applies only without inhibitors, levels and optional transitions, on
-// ordinary nets, to each independent component:
+// For the plain untimed net. Inhibitors are told as ordinary arcs where that can be done
+// (proof/complement.h). Applies only without levels and optional transitions, on ordinary nets, to
+// each independent component:
 //   marked graph          live iff every circuit has a token (Commoner, Holt, Even, Pnueli, JCSS 5,
 //                         1971); bounded if strongly connected
 //   extended free choice  well-formed iff covered by positive flows of places and of transitions
