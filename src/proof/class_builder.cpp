@@ -51,7 +51,17 @@ void ClassBuilder::check(const GraphRequest& request) {
     if (carries_time_left(request.net)) {
         graph_.why_not.emplace_back("a token carries the time left of another");
     }
+    const std::uint32_t places = request.net.place_count();
+    drawn_.assign(places + request.net.transition_count(), 0);
+    const auto is_drawn = [](const DurationTable& d) {
+        return d.kind == DurationKind::kDistribution ? std::uint8_t{1} : std::uint8_t{0};
+    };
+    for (std::uint32_t p = 0; p < places; ++p) {
+        const std::uint32_t d = n.place[p].duration;
+        drawn_[p] = d == kNoIndex ? std::uint8_t{0} : is_drawn(n.durations[d]);
+    }
     for (const DelayTable& d : n.delays) {
+        drawn_[places + d.transition] = is_drawn(d.duration);
         if (d.memory == DelayMemory::kAge) {
             graph_.why_not.push_back("transition " + std::string(n.transitions.path(d.transition)) +
                                      " has a delay that is stopped and goes on");
@@ -92,11 +102,9 @@ void ClassBuilder::check(const GraphRequest& request) {
 TimedGraph ClassBuilder::make() {
     const World& world = graph_.states->world;
     const NetTables& n = request_.net.tables();
-    for (const std::uint32_t e : world.free_events) {
-        if (!n.declarations.events[e].outside) {
-            graph_.not_exact.push_back("event " + std::string(n.events.path(e)) +
-                                       " is raised by a movement: it was tried at any instant");
-        }
+    for (const std::uint32_t e : world.movement_events) {
+        graph_.not_exact.push_back("event " + std::string(n.events.path(e)) +
+                                   " is raised by a movement: it was tried at any instant");
     }
     if (world.free_sensors.size() > 6) {
         graph_.not_over.emplace_back("more than six sensors change at one instant");
@@ -105,6 +113,21 @@ TimedGraph ClassBuilder::make() {
     graph_.graph.over = graph_.not_over.empty();
     graph_.graph.exact = graph_.not_exact.empty();
     return build();
+}
+
+// What was over is looked up in the state that was left: its numbers are the variables'.
+bool ClassBuilder::coincidental(Driver& driver) {
+    if (driver.passed().size() < 2) {
+        return false;
+    }
+    collect_waiting(request_.net, graph_.states->decode(graph_.graph.edges.size()), waiting_);
+    const std::uint32_t places = request_.net.place_count();
+    return std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& w) {
+        const std::vector<std::int64_t>& over = driver.passed();
+        return w.kind != Waiting::kSchedule &&
+               drawn_[w.kind == Waiting::kDelay ? places + w.element : w.element] != 0 &&
+               std::find(over.begin(), over.end(), w.number) != over.end();
+    });
 }
 
 void ClassBuilder::follow(const TimedGraph& graph) {
@@ -147,7 +170,7 @@ bool ClassBuilder::choose(Driver& driver, std::vector<std::int64_t>& over) {
         }
     }
     // With events from outside time may also end in between.
-    const bool between = !driver.world().free_events.empty() && driver.may_come();
+    const bool between = driver.may_come();
     const auto count = static_cast<std::uint32_t>(leaders.size());
     const std::uint32_t answer = driver.chooser.pick(count + (between ? 1 : 0));
     passed_ = zone_;

@@ -40,6 +40,7 @@ class ClassBuilder : public TimedBuilder {
     void enter(std::uint32_t state) override;
     bool encode(Driver& driver, const Driver::Step& step, std::vector<std::uint8_t>& out) override;
     std::pair<std::int64_t, std::int64_t> ticks(const Driver::Step& step) override;
+    bool coincidental(Driver& driver) override;
     // A reached class, before it is kept. False: it is not wanted.
     virtual bool keep(Driver& driver, const Zone& zone) {
         (void)driver, (void)zone;
@@ -57,6 +58,7 @@ class ClassBuilder : public TimedBuilder {
     Track track_;
     TimedGraph::States* states_ = nullptr;
     std::vector<Waiting> waiting_;
+    std::vector<std::uint8_t> drawn_;  // per place, then per transition: from a distribution
 };
 
 }  // namespace puppetri::proof

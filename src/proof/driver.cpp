@@ -99,8 +99,8 @@ SimTime Driver::begin(ActionIndex action, ActivityIndex, SimTime, SimTime durati
 
 // The outside may act in an instant that has settled. True: it does.
 bool Driver::ask_outside(Step& out) {
-    const auto events = static_cast<std::uint32_t>(
-        outside < world_->outside_events ? world_->free_events.size() : 0);
+    const std::uint32_t outer = outer_events();
+    const auto events = outer + static_cast<std::uint32_t>(world_->movement_events.size());
     const auto sensors = static_cast<std::uint32_t>(world_->free_sensors.size());
     // All sensors at once; of too many one at a time.
     const std::uint32_t settings = sensors == 0 ? 0 : sensors <= 6u ? (1u << sensors) - 1 : sensors;
@@ -110,8 +110,10 @@ bool Driver::ask_outside(Step& out) {
     }
     from_outside_ = true;
     if (answer <= events) {
-        const std::uint32_t e = world_->free_events[answer - 1];
-        outside += world_->outside_events == GraphRequest::kAnyNumber ? 0 : 1;
+        const bool from_there = answer <= outer;
+        const std::uint32_t e = from_there ? world_->outer_events[answer - 1]
+                                           : world_->movement_events[answer - outer - 1];
+        outside += !from_there || world_->outside_events == GraphRequest::kAnyNumber ? 0 : 1;
         engine.occur({e}, {engine.state().now});
         engine.turn();
         out.label = Edge::kEvent | e;

@@ -22,7 +22,9 @@ struct World {
     std::vector<TickRange> actions;
     std::uint32_t outside_events = 0;
     std::int64_t beat = 0;
-    std::vector<std::uint32_t> free_events;   // that may occur at any time, and matter
+    // That may occur at any time, and matter: from outside, so often; of movements, as often as
+    // they like, because nobody here knows the movement.
+    std::vector<std::uint32_t> outer_events, movement_events;
     std::vector<std::uint32_t> free_sensors;  // that no event sets
 };
 
@@ -50,7 +52,8 @@ class Driver final : private net::Timekeeper, private net::MovementHost {
     void start();
     void restore(net::State state, std::uint32_t outside_so_far);
     Did step(Step& out);
-    bool may_come() const { return outside < world_->outside_events; }
+    // Some event may come at any time.
+    bool may_come() const { return outer_events() + world_->movement_events.size() != 0; }
     // Of the last step: time could have passed instead; all that is free to happen or not.
     bool settled() const { return settled_; }
     // Nothing makes the next step necessary but the outside.
@@ -84,6 +87,11 @@ class Driver final : private net::Timekeeper, private net::MovementHost {
     void cut(net::ActivityIndex, SimTime) override {}
     void left(net::ActivityIndex, SimTime) override {}
     net::EngineOptions options();
+    std::uint32_t outer_events() const {
+        return outside < world_->outside_events
+                   ? static_cast<std::uint32_t>(world_->outer_events.size())
+                   : 0;
+    }
     bool ask_outside(Step& out);
 
     bool settled_ = false, idle_ = false, from_outside_ = false;

@@ -84,11 +84,9 @@ class ReadinessBuilder final : public TimedBuilder {
                                            " comes at a certain time");
             }
         }
-        for (const std::uint32_t e : world.free_events) {
-            if (!n.declarations.events[e].outside) {
-                graph_.not_exact.push_back("event " + std::string(n.events.path(e)) +
-                                           " is raised by a movement");
-            }
+        for (const std::uint32_t e : world.movement_events) {
+            graph_.not_exact.push_back("event " + std::string(n.events.path(e)) +
+                                       " is raised by a movement");
         }
         if (world.free_sensors.size() > 6) {
             graph_.not_over.emplace_back("more than six sensors change at one instant");

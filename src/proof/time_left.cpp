@@ -220,9 +220,15 @@ std::vector<std::string> assumed(const World& world) {
         }
     }
     if (world.outside_events != 0 && world.outside_events != GraphRequest::kAnyNumber &&
-        !world.free_events.empty()) {
+        !world.outer_events.empty()) {
         list.push_back("at most " + std::to_string(world.outside_events) +
                        " events come from outside");
+    }
+    for (const std::uint32_t e : world.movement_events) {
+        list.push_back("event " + std::string(n.events.path(e)) + " may occur at any time");
+    }
+    for (const std::uint32_t d : world.free_sensors) {
+        list.push_back("sensor " + std::string(n.data.path(d)) + " may change at any time");
     }
     return list;
 }

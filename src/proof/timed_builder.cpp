@@ -68,11 +68,12 @@ World world_of(const GraphRequest& request, const AtomReader& atoms) {
         if (event.sets.valid()) {
             set[event.sets.value] = true;
         }
-        const bool free = event.outside || !raised[e];
         const bool matters = !n.event_listeners.row(e).empty() || event.sets.valid() ||
                              event.makes_ready.valid() || atoms.mentions_event(e);
-        if (free && matters && request.outside_events != 0) {
-            world.free_events.push_back(e);
+        if (matters && event.outside && request.outside_events != 0) {
+            world.outer_events.push_back(e);
+        } else if (matters && !event.outside && !raised[e]) {
+            world.movement_events.push_back(e);
         }
     }
     for (std::uint32_t d = 0; d < n.data.size(); ++d) {
@@ -94,8 +95,11 @@ TimedBuilder::TimedBuilder(const GraphRequest& request, ClockForm form, const ch
 Ended TimedBuilder::look() {
     const Graph& g = graph_.graph;
     const std::uint32_t states = graph_.states->store.size();
-    return meter_.look(states, g.edges.items.size() + row_.size(), states - g.edges.size(),
-                       graph_.bytes());
+    const std::uint64_t held =
+        graph_.bytes() + g.flags.capacity() + 24 * std::uint64_t{g.edges.items.capacity()} +
+        8 * (std::uint64_t{g.atoms.may.capacity()} + g.atoms.must.capacity() +
+             graph_.waits.waiting.capacity() + graph_.waits.stirred.capacity());
+    return meter_.look(states, g.edges.items.size() + row_.size(), states - g.edges.size(), held);
 }
 
 // The state in which the driver stands, whose string is in the buffer.
@@ -169,7 +173,8 @@ void TimedBuilder::begin() {
             g.atoms.must[w] &= g.atoms.must[std::size_t{s} * atoms_.words() + w];
         }
         if (several) {
-            row_.push_back({{Edge::kPass, s}, 0, 0, std::vector<std::uint64_t>(wait_words())});
+            row_.push_back(
+                {{Edge::kPass, s}, 0, 0, false, std::vector<std::uint64_t>(wait_words())});
         }
     });
     if (several) {
@@ -207,6 +212,7 @@ void TimedBuilder::expand(std::uint32_t state) {
                 r.edge.label = step.label;
                 r.edge.target = add(0);
                 std::tie(r.low, r.high) = ticks(step);
+                r.coincidental = coincidental(d);
                 r.stirs.resize(wait_words());
                 if (wait_words() != 0) {
                     stirred(d, step, r.stirs.data());
@@ -245,9 +251,11 @@ void TimedBuilder::close_row() {
             g.edges.items.push_back(r.edge);
             g.low_ticks.push_back(r.low);
             g.high_ticks.push_back(r.high);
+            graph_.coincidental.push_back(r.coincidental ? 1 : 0);
             graph_.waits.stirred.insert(graph_.waits.stirred.end(), r.stirs.begin(), r.stirs.end());
             continue;
         }
+        graph_.coincidental.back() &= r.coincidental ? 1 : 0;
         std::uint64_t* last =
             graph_.waits.stirred.data() + graph_.waits.stirred.size() - wait_words();
         for (std::uint32_t w = 0; w < wait_words(); ++w) {

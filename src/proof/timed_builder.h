@@ -76,6 +76,11 @@ class TimedBuilder {
     virtual void stirred(Driver& driver, const Driver::Step& step, std::uint64_t* row) {
         (void)driver, (void)step, (void)row;
     }
+    // Whether the last pass ends several durations at once, one of them drawn from a continuum.
+    virtual bool coincidental(Driver& driver) {
+        (void)driver;
+        return false;
+    }
     virtual void read_waits(Driver& driver, std::uint64_t* row) { (void)driver, (void)row; }
 
     const GraphRequest& request_;
@@ -87,6 +92,7 @@ class TimedBuilder {
     struct Row {
         Edge edge;
         std::int64_t low = 0, high = 0;
+        bool coincidental = false;
         std::vector<std::uint64_t> stirs;
     };
     void begin();

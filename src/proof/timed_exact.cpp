@@ -37,17 +37,21 @@ class ExactBuilder final : public TimedBuilder {
         for (const Special& s : n.specials) {
             others = others || !s.raises.empty();
         }
-        for (const std::uint32_t e : world.free_events) {
-            const std::string who = "event " + std::string(n.events.path(e));
-            graph_.not_over.push_back(who +
-                                      " was only tried at instants in which something "
-                                      "happens by itself");
-            if (!n.declarations.events[e].outside) {
-                graph_.not_exact.push_back(who +
-                                           " is raised by a movement: it was tried at any "
-                                           "instant");
-            } else if (others) {
-                graph_.not_exact.push_back(who + " was tried after other events of its instant");
+        for (const auto* events : {&world.outer_events, &world.movement_events}) {
+            for (const std::uint32_t e : *events) {
+                const std::string who = "event " + std::string(n.events.path(e));
+                graph_.not_over.push_back(who +
+                                          " was only tried at instants in which something "
+                                          "happens by itself");
+                if (events == &world.movement_events) {
+                    graph_.not_exact.push_back(who +
+                                               " is raised by a movement: it was tried at "
+                                               "any instant");
+                } else if (others) {
+                    graph_.not_exact.push_back(who +
+                                               " was tried after other events of its "
+                                               "instant");
+                }
             }
         }
         for (const std::uint32_t d : world.free_sensors) {

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "puppetri/proof/timed_exact.h"
 #include "timed_nets.h"
 
@@ -108,6 +110,48 @@ TEST_CASE("a loop that may be left or not has a shortest time and no longest [la
     CHECK(e->avoidable);
     CHECK(e->shortest == 2 * kMs);
     CHECK(e->longest == SimTime::never().ticks);
+}
+
+TEST_CASE(
+    "two exponential durations that end at one instant are a coincidence, and said so "
+    "[unit]") {
+    Maker m;
+    m.place("A", 1, net::exponential(1));
+    m.place("B", 1, net::exponential(2));
+    m.t("both", {"A", "B"}, {"Both"}).priority = 2;
+    m.t("a", {"A"}, {});
+    m.t("b", {"B"}, {});
+    const net::Net net = m.net();
+    const TimedGraph g = class_graph({.net = net, .budget = kBudget});
+    const net::PlaceIndex both = net.find_place("Both");
+    for (std::uint32_t s = 0; s < g.graph.size(); ++s) {
+        if (g.tokens(s, both).total == 1) {
+            const auto path = g.path_to(s);
+            // Either both begin ready, within half a tick, or they end together.
+            const bool at_once = g.graph.edges.items[path[0]].target != s && path.size() == 2;
+            const bool lucky = std::any_of(path.begin(), path.end(),
+                                           [&](std::uint32_t e) { return g.coincidental[e] != 0; });
+            CHECK((lucky || at_once));
+        }
+    }
+    for (std::uint32_t e = 0; e < g.graph.edges.items.size(); ++e) {
+        CHECK((g.coincidental[e] == 0 || g.graph.edges.items[e].label == Edge::kPass));
+    }
+}
+
+TEST_CASE("a zone is closed whichever way its bounds come [law]") {
+    Maker m;
+    // Three that wait; the middle one's bounds follow from the others' when all end in order.
+    m.place("A", 1, net::between(500, 2000));
+    m.place("B", 2, net::between(1000, 1000));
+    m.t("x", {"A", "3*B"}, {});
+    const net::Net net = m.net();
+    const TimedGraph g = class_graph({.net = net, .budget = kBudget});
+    // A first, with both, or after them; two equal ones never part.
+    CHECK(g.graph.edges.row(g.graph.initial).size() == 3);
+    for (std::uint32_t e = g.graph.edges.starts[0]; e < g.graph.edges.starts[1]; ++e) {
+        CHECK(g.graph.high_ticks[e] <= 1000);
+    }
 }
 
 }  // namespace

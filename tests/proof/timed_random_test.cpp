@@ -80,8 +80,11 @@ struct Played {
 };
 
 Played play(const net::Net& net, net::Chooser& chooser, std::uint64_t seed = 1,
-            std::uint64_t firings = kFirings, std::int64_t until = kUntil) {
+            std::uint64_t firings = kFirings, std::int64_t until = kUntil,
+            std::uint32_t events = 0) {
     net::EngineOptions options;
+    options.free = events != 0;
+    options.free_events = events;
     options.beat = kRandomNetUnit;
     options.seed = seed;
     Engine engine(net, chooser, options);
@@ -355,6 +358,55 @@ TEST_CASE("no run leaves the readiness graph [law]") {
     MESSAGE(compared << " nets, " << firings << " firings followed, " << refused << " refused, "
                      << endless << " unbounded");
     CHECK(compared * 3 > nets);
+}
+
+TEST_CASE("with events from outside no run leaves the readiness graph, nor the classes [law]") {
+    const std::uint64_t nets = nets_to_try(150);
+    std::uint64_t compared = 0, firings = 0, failures = 0, scripts = 0;
+    for (std::uint64_t i = 0; i < nets && failures < 3; ++i) {
+        RandomStream stream = series(16, i);
+        net::NetDraft draft = random_net(stream);
+        for (std::size_t tries = 0; draft.events.empty() && tries < 20; ++tries) {
+            draft = random_net(stream);
+        }
+        if (!draft.data.empty() && draft.data.back().sensor && i % 2 == 0) {
+            draft.events[0].sets = {};  // nobody sets it: free
+        }
+        const Checked<net::Net> net = net::compile(draft);
+        if (!net.has_value() || draft.events.empty()) {
+            continue;
+        }
+        const GraphRequest request{.net = *net, .outside_events = 2, .budget = kSmall};
+        for (const bool classes : {false, true}) {
+            const TimedGraph g = classes ? class_graph(request) : readiness_graph(request);
+            if (!g.available() || g.graph.ended != Ended::kDone || (classes && net->paced())) {
+                continue;
+            }
+            ++compared;
+            const Runs states(g, *net);
+            net::ExhaustiveChooser all;
+            std::size_t tries = 0;
+            do {
+                const Played played = play(*net, all, 1, 5, kUntil, 2);
+                const std::size_t n = followed(g.graph, states.looks, played);
+                firings += n;
+                const bool fault = played.end == "fault" && !played.firings.empty();
+                if (n + (fault ? 1 : 0) < played.firings.size() && ++failures <= 3) {
+                    FAIL_CHECK("net " << i << "\n"
+                                      << show(draft) << played.text() << "\nfollowed " << n);
+                }
+            } while (all.next() && ++tries < 200 && failures < 3);
+            // What comes from outside can be played, too, where nothing else happens at its
+            // instant that would come later.
+            for (std::uint32_t s = 0; classes && s < g.graph.size() && s < 40; ++s) {
+                scripts += g.script(g.path_to(s)).has_value() ? 1 : 0;
+            }
+        }
+    }
+    MESSAGE(compared << " graphs, " << firings << " firings followed, " << scripts
+                     << " paths played");
+    CHECK(compared * 2 > nets);
+    CHECK(scripts > nets);
 }
 
 TEST_CASE("no run leaves the plain untimed picture, priorities and all [law]") {

@@ -40,7 +40,7 @@ struct GraphRequest {
     // By ActionIndex, of `takes auto`: what the movement declares. Others: anything at all.
     std::span<const TickRange> actions = {};
     // How often the outside makes an event occur, at any time: never, at most so often, any number
-    // of times. Events of movements (neither outside, nor scheduled, nor raised) count as these.
+    // of times. Events of movements (neither outside, nor scheduled, nor raised) may always occur.
     std::uint32_t outside_events = kAnyNumber;
     std::int64_t beat = kTicksPerSecond;  // of paced nets
     const Budget& budget;
@@ -111,6 +111,9 @@ class TimedGraph {
     std::vector<std::string> assumptions;
     std::vector<Stop> stops;
     Waits waits;
+    // Per edge (in the order of edges.items), of state classes: 1 if several durations have to end
+    // at one instant, one of which is drawn from a distribution: probability 0 in real time.
+    std::vector<std::uint8_t> coincidental;
 
     net::Counts tokens(std::uint32_t state, net::PlaceIndex place) const;
     Value datum(std::uint32_t state, net::DatumIndex datum) const;
