@@ -6,8 +6,8 @@ namespace puppetri::cli {
 
 std::vector<Command> all_commands() {
     return {
-        new_command(),    check_command(),  fmt_command(),     run_command(),   draw_command(),
-        export_command(), render_command(), convert_command(), query_command(),
+        new_command(),    check_command(),  fmt_command(),     run_command(),     draw_command(),
+        export_command(), render_command(), explore_command(), convert_command(), query_command(),
     };
 }
 

@@ -15,6 +15,7 @@ Command run_command();
 Command draw_command();
 Command export_command();
 Command render_command();
+Command explore_command();
 Command convert_command();
 Command query_command();
 

@@ -222,6 +222,46 @@ class Run(Cli):
         self.assertEqual(sorted(os.listdir(self.path)), ["log.csv", "scene.pup"])
 
 
+class Explore(Cli):
+    # A token walks on a ring of 50 places, twice: 50 * 50 markings, an edge per ring in each.
+    RINGS = "net rings\n" + "".join(
+        f"pl {r}{i} ({1 if i == 0 else 0})\ntr t{r}{i} {r}{i} -> {r}{(i + 1) % 50}\n" for r in "ab" for i in range(50))
+
+    def test_counts_go_to_stdout_as_json(self):
+        net = self.scene(self.RINGS, "rings.net")
+        for threads in ("1", "2"):
+            done = run("explore", net, "--json", "--threads", threads)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            report = json.loads(done.stdout)
+            self.assertEqual([report[k] for k in ("states", "edges", "max_tokens_in_place", "max_tokens_per_marking")],
+                             [2500, 5000, 1, 2])
+            self.assertGreater(report["bytes_per_state"], 0)
+            self.assertGreaterEqual(report["seconds"], 0)
+
+    def test_an_unbounded_net_is_unknown_and_its_place_is_named(self):
+        net = self.scene("net n\npl a (1)\ntr t a -> a b\ntr u b -> c\n", "n.net")
+        done = run("explore", net, "--json", "--time", "300ms")
+        self.assertEqual(done.returncode, 3)
+        report = json.loads(done.stdout)
+        self.assertFalse(report["complete"])
+        self.assertIn(report["unbounded_place"], ("b", "c"))
+        self.assertIn("place " + report["unbounded_place"], done.stderr)
+
+    def test_ctrl_c_and_small_budgets_end_with_what_is_known(self):
+        text = "net n\npl a (1)\n" + "".join(f"tr t{i} a -> a b{i}\n" for i in range(6))
+        net = self.scene(text, "n.net")
+        done = run("explore", net, "--json", "--memory", "20M")
+        self.assertEqual(done.returncode, 3)
+        self.assertGreater(json.loads(done.stdout)["states"], 10000)
+        process = subprocess.Popen([PROGRAM, "explore", net, "--json"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, text=True)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=30)
+        self.assertEqual((process.returncode, json.loads(out)["ended"]), (3, "cancelled"))
+        self.assertEqual(run("explore", net, "--time", "soon").returncode, 2)
+
+
 class New(Cli):
     def test_each_template_is_a_scene_that_runs(self):
         for template in ("toss", "walk", "ball"):
