@@ -41,7 +41,7 @@ class Writer {
 
     std::string run() {
         out_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<pnml>\n<net id=\"" +
-               xml_escaped(draft_.name.empty() ? "Net-One" : draft_.name) +
+               xml_escaped(draft_.name) +
                "\" type=\"P/T net\">\n"
                "<token id=\"Default\" enabled=\"true\" red=\"0\" green=\"0\" blue=\"0\"/>\n";
         for (std::uint32_t i = 0; i < draft_.places.size(); ++i) {

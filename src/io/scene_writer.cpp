@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A plain net as a scene: places and transitions of a file with nobody on stage, to be run, proved
 // and edited like any other.
+#include <algorithm>
 #include <string>
 
 #include "net_features.h"
@@ -10,6 +11,8 @@
 
 namespace puppetri::io {
 namespace {
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 // A name of the language, quoted where it has other signs than letters, digits and _.
 std::string name(const std::string& text) {
@@ -25,7 +28,7 @@ std::string name(const std::string& text) {
     }
     std::string out = "'";
     for (const char c : text) {
-        out += c == '\'' || c == '\n' || c == '\r' ? '_' : c;
+        out += c == '\'' || is_control(c) ? '_' : c;
     }
     return out + "'";
 }
@@ -46,16 +49,34 @@ std::string quoted(const std::string& text) {
                 out += "\\t";
                 break;
             default:
-                out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+                out += is_control(c) ? ' ' : c;
         }
     }
     return out + "\"";
 }
 
+// The language keeps numbers as exact fractions: at most 18 digits.
+std::string number(double x) {
+    std::string text = number_to_text(x);
+    const auto digits =
+        std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (digits > 18 || text.find('e') != std::string::npos) {
+        text = number_to_text_fixed(x, x < 10 ? 17 : x < 1e6 ? 12 : 6);
+    }
+    return text;
+}
+
+// In the unit that shows most digits.
+std::string time_text(double s) {
+    return s >= 1      ? number(s) + " s"
+           : s >= 1e-3 ? number(s * 1e3) + " ms"
+                       : number(s * 1e6) + " us";
+}
+
 std::string seconds(std::int64_t ticks) {
     return ticks % kTicksPerMillisecond == 0
                ? decimal_to_text(ticks / kTicksPerMillisecond, 3) + " s"
-               : number_to_text(SimTime{ticks}.seconds()) + " s";
+               : time_text(SimTime{ticks}.seconds());
 }
 
 std::string time_of(const Expr& e) {
@@ -63,8 +84,7 @@ std::string time_of(const Expr& e) {
         return seconds(e.literal_value());
     }
     const Value v = e.literal_value();
-    return number_to_text(e.type().kind == ValueKind::kReal ? real_of_value(v)
-                                                            : static_cast<double>(v));
+    return number(e.type().kind == ValueKind::kReal ? real_of_value(v) : static_cast<double>(v));
 }
 
 // What stands after `takes` and `after`; empty: it has no words here and was dropped,
@@ -72,7 +92,7 @@ std::string time_of(const Expr& e) {
 std::string duration(const net::DurationDraft& d) {
     double mean = 0;
     if (is_exponential(d, mean)) {
-        return "exponential(" + number_to_text(mean) + " s)";
+        return "exponential(" + time_text(mean) + ")";
     }
     if (d.kind == net::DurationKind::kConstant && d.a.is_literal()) {
         return seconds(d.a.literal_value());

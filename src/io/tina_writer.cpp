@@ -78,7 +78,9 @@ class Writer {
         return caption.empty() ? "" : " : " + name(caption);
     }
 
-    static Ends ends_of(const net::DelayDraft& delay) {
+    // An end beside a whole number of milliseconds (or of the unit that the file had) is an open
+    // one.
+    Ends ends_of(const net::DelayDraft& delay) const {
         const net::DurationDraft& d = delay.duration;
         Ends out;
         SimTime low;
@@ -92,11 +94,12 @@ class Writer {
             out.low = out.high = d.kind == net::DurationKind::kConstant ? d.a.literal_value() : 0;
             return out;
         }
-        if (out.low % kTicksPerMillisecond == 1) {
+        const std::int64_t whole = said_ > 1 ? said_ : kTicksPerMillisecond;
+        if (out.low % whole == 1) {
             --out.low;
             out.open_low = true;
         }
-        if (!out.infinite && out.high % kTicksPerMillisecond == kTicksPerMillisecond - 1) {
+        if (!out.infinite && out.high % whole == whole - 1) {
             ++out.high;
             out.open_high = true;
         }
@@ -113,20 +116,22 @@ class Writer {
     // The unit that [a,w[ was read with, if it fits; else the largest that all times are multiples
     // of, at most a second.
     void choose_unit() {
-        std::int64_t common = kTicksPerSecond, said = 0;
         for (const net::TransitionDraft& t : draft_.transitions) {
-            if (!has_interval(t)) {
-                continue;
-            }
-            const Ends ends = ends_of(*t.delay);
-            common = std::gcd(std::gcd(common, ends.low), ends.high);
-            if (ends.infinite && t.delay->duration.parameters[1].type().kind == ValueKind::kTime) {
-                said = t.delay->duration.parameters[1].literal_value();
+            SimTime low;
+            if (t.delay && is_at_least(t.delay->duration, low) &&
+                t.delay->duration.parameters[1].type().kind == ValueKind::kTime) {
+                said_ = t.delay->duration.parameters[1].literal_value();
             }
         }
-        unit_ = said > 0 && common % said == 0 ? said : common;
-        if (unit_ > kTicksPerMillisecond && unit_ != kTicksPerSecond &&
-            unit_ % kTicksPerMillisecond != 0) {
+        std::int64_t common = kTicksPerSecond;
+        for (const net::TransitionDraft& t : draft_.transitions) {
+            if (has_interval(t)) {
+                const Ends ends = ends_of(*t.delay);
+                common = std::gcd(std::gcd(common, ends.low), ends.high);
+            }
+        }
+        unit_ = said_ > 0 && common % said_ == 0 ? said_ : common;
+        if (unit_ > kTicksPerMillisecond && unit_ % kTicksPerMillisecond != 0) {
             unit_ = std::gcd(unit_, kTicksPerMillisecond);
         }
     }
@@ -187,6 +192,7 @@ class Writer {
 
     const net::NetDraft& draft_;
     std::int64_t unit_ = kTicksPerSecond;
+    std::int64_t said_ = 0;  // the unit that [a,w[ was read with
     bool timed_ = false;
     std::string out_;
 };

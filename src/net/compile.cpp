@@ -481,7 +481,10 @@ class Compiler {
     // The conditions on counts. False: there are none.
     bool watch(std::uint32_t t, const std::map<std::uint32_t, Demand>& demands) {
         bool any = false;
-        for (const auto& [p, d] : demands) {
+        for (const auto& row : demands) {
+            // By name, not by structured binding: clang 14 does not capture those.
+            const std::uint32_t p = row.first;
+            const Demand& d = row.second;
             const bool counted = out_.place[p].kind == PlaceKind::kCount;
             const auto need = [&](bool ready, std::int64_t threshold, bool inhibits) {
                 const Watcher w{t | (inhibits ? Watcher::kInhibits : 0),

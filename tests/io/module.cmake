@@ -10,3 +10,48 @@ target_compile_features(puppetri_test_readers PUBLIC cxx_std_20)
 target_link_libraries(test_io PRIVATE puppetri_test_readers)
 target_sources(test_io PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp"
     "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/example_motion.cpp")
+
+# Readers and writers of nets with what they need and nothing else: quick to build with sanitizers.
+file(GLOB net_format_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/base/*.cpp"
+    "${CMAKE_CURRENT_SOURCE_DIR}/src/net/*.cpp" "${CMAKE_CURRENT_SOURCE_DIR}/src/lang/*.cpp")
+foreach(unit net_file xml_text pnml_document pnml pipe tina tina_lexer tina_priorities test_arcs symmetric_sorts
+        symmetric_terms symmetric_unfold contest_queries net_features loops write_net pnml_writer pipe_writer tina_writer
+        lola_writer graphviz_writer scene_writer)
+    list(APPEND net_format_sources "${CMAKE_CURRENT_SOURCE_DIR}/src/io/${unit}.cpp")
+endforeach()
+
+# The hostile tests alone, for `.ci/run`: everything under the sanitizers would take long to build.
+if(PUPPETRI_SANITIZE)
+    add_executable(test_hostile_nets tests/io/net_hostile_test.cpp ${net_format_sources})
+    target_include_directories(test_hostile_nets PRIVATE include tests)
+    target_include_directories(test_hostile_nets SYSTEM PRIVATE "${PEGTL_INCLUDE_DIR}")
+    target_link_libraries(test_hostile_nets PRIVATE puppetri_test_main pugixml::pugixml)
+    puppetri_flags(test_hostile_nets)
+    target_compile_definitions(test_hostile_nets PRIVATE PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+    add_test(NAME hostile_nets COMMAND test_hostile_nets)
+endif()
+
+# The fuzzers, by the option of tests/lang/module.cmake; their tests are short runs.
+if(PUPPETRI_FUZZ)
+    add_library(fuzzed_nets OBJECT ${net_format_sources})
+    target_include_directories(fuzzed_nets PRIVATE include)
+    target_include_directories(fuzzed_nets SYSTEM PRIVATE "${PEGTL_INCLUDE_DIR}")
+    target_link_libraries(fuzzed_nets PUBLIC pugixml::pugixml)
+    target_compile_options(fuzzed_nets PRIVATE -g -O1 -ffp-contract=off -fsanitize=fuzzer-no-link,address,undefined
+        -fno-sanitize-recover=undefined)
+    foreach(target pnml:coloured.pnml pipe:coloured.xml tina:timed.net queries:queries.xml)
+        string(REPLACE ":" ";" target "${target}")
+        list(GET target 0 name)
+        list(GET target 1 file)
+        add_executable(fuzz_${name} tests/fuzz/net_fuzz.cpp)
+        target_include_directories(fuzz_${name} PRIVATE include tests)
+        target_compile_definitions(fuzz_${name} PRIVATE PUP_FUZZED="${file}"
+            PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+        target_compile_options(fuzz_${name} PRIVATE -g -O1 -fsanitize=fuzzer,address,undefined
+            -fno-sanitize-recover=undefined)
+        target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer,address,undefined)
+        target_link_libraries(fuzz_${name} PRIVATE fuzzed_nets)
+        add_test(NAME fuzz_${name} COMMAND fuzz_${name} -runs=2000 -seed=1 -max_len=4000 -timeout=10
+            "-dict=${CMAKE_CURRENT_SOURCE_DIR}/tests/fuzz/net.dict" "${CMAKE_CURRENT_SOURCE_DIR}/tests/corpus/nets")
+    endforeach()
+endif()
