@@ -25,7 +25,16 @@ void fill(Search& search, std::span<const CompiledPredicate> atoms, std::uint32_
           Graph& graph) {
     Own own;
     Worker<kWords, false> worker(search, own);
-    const auto count = [&](std::uint32_t place) { return worker.tokens(place); };
+    // Many atoms read the same places: each is unpacked once per state.
+    std::vector<std::uint32_t> read =
+        search.options.final != nullptr ? search.final.places() : std::vector<std::uint32_t>();
+    for (const CompiledPredicate& atom : atoms) {
+        const std::vector<std::uint32_t> places = atom.places();
+        read.insert(read.end(), places.begin(), places.end());
+    }
+    std::sort(read.begin(), read.end());
+    read.erase(std::unique(read.begin(), read.end()), read.end());
+    Marking marking(read.empty() ? 0 : read.back() + std::size_t{1});
     const std::uint64_t row = (atoms.size() + 63) / 64;
     const auto states = static_cast<std::uint32_t>(graph.flags.size());
     for (std::uint32_t id = 0; id < states; ++id) {
@@ -33,12 +42,15 @@ void fill(Search& search, std::span<const CompiledPredicate> atoms, std::uint32_
             search.look(0, 0);
         }
         worker.look_at(id);
+        for (const std::uint32_t place : read) {
+            marking[place] = worker.tokens(place);
+        }
         for (std::size_t a = 0; a < atoms.size(); ++a) {
-            if (atoms[a].holds_by(count)) {
+            if (atoms[a].holds(marking)) {
                 graph.atoms.may[id * row + a / 64] |= std::uint64_t{1} << (a & 63);
             }
         }
-        if (search.options.final != nullptr && search.final.holds_by(count)) {
+        if (search.options.final != nullptr && search.final.holds(marking)) {
             graph.flags[id] |= Graph::kFinal;
         }
         if (id >= expanded || search.stop) {

@@ -146,13 +146,22 @@ class Logic {
         : session_(session), questions_(questions), decisions_(questions.size()) {}
 
     std::vector<Decision> run() {
-        by_reachability();
+        by_reachability(decide_reachable_quickly);
         // A part of the graph shows many a counterexample, and small graphs are done with it.
         by_graph(0.2, kGlance);
+        if (!open().empty()) {
+            by_diagrams(session_.quick_symbolic(), 0.02, 1);
+        }
         if (!open().empty() && !session_.too_many_to_visit()) {
             by_graph(0.6, ContestSession::kVisited);
         }
-        by_diagrams();
+        if (!open().empty() && !session_.out_of_time()) {
+            // Two rounds, so that one hard question does not eat the time of all.
+            proof::SymbolicSpace* space = session_.symbolic(0.4);
+            by_diagrams(space, 0.1, 1e9);
+            by_diagrams(space, 0.5, 1e9);
+        }
+        by_reachability(decide_reachable);
         return std::move(decisions_);
     }
 
@@ -167,16 +176,20 @@ class Logic {
         return list;
     }
 
-    void by_reachability() {
+    void by_reachability(std::vector<Decision> (*decide)(ContestSession&,
+                                                         std::span<const Predicate>)) {
         std::vector<Predicate> goals;
         std::vector<std::pair<std::uint32_t, bool>> meaning;
-        for (std::uint32_t i = 0; i < questions_.size(); ++i) {
+        for (const std::uint32_t i : open()) {
             if (std::optional<AsReachability> r = as_reachability(questions_[i])) {
                 goals.push_back(std::move(r->goal));
                 meaning.emplace_back(i, r->value_if_reached);
             }
         }
-        const std::vector<Decision> reached = decide_reachable(session_, goals);
+        if (goals.empty()) {
+            return;
+        }
+        const std::vector<Decision> reached = decide(session_, goals);
         for (std::size_t k = 0; k < goals.size(); ++k) {
             const auto [i, value_if_reached] = meaning[k];
             decisions_[i] = reached[k];
@@ -231,26 +244,19 @@ class Logic {
         });
     }
 
-    void by_diagrams() {
-        const std::vector<std::uint32_t> open_now = open();
-        if (open_now.empty() || session_.out_of_time()) {
-            return;
-        }
-        proof::SymbolicSpace* space = session_.symbolic(0.6);
+    // Each question gets a share of the time that is left, and at most so many seconds.
+    void by_diagrams(proof::SymbolicSpace* space, double fraction, double most) {
         if (space == nullptr) {
             return;
         }
-        // Two rounds, so that one hard question does not eat the time of all.
-        for (const double share : {0.15, 1.0}) {
-            for (const std::uint32_t i : open()) {
-                space->renew(session_.share(share));
-                const LogicQuestion& q = questions_[i];
-                const std::optional<bool> holds = is_linear(q.formula)
-                                                      ? linear_by_diagrams(*space, q)
-                                                      : branching_by_diagrams(*space, q);
-                if (holds.has_value()) {
-                    decisions_[i] = {proof::truth_of(*holds), kByDiagrams};
-                }
+        for (const std::uint32_t i : open()) {
+            space->renew(session_.share(fraction, most));
+            const LogicQuestion& q = questions_[i];
+            const std::optional<bool> holds = is_linear(q.formula)
+                                                  ? linear_by_diagrams(*space, q)
+                                                  : branching_by_diagrams(*space, q);
+            if (holds.has_value()) {
+                decisions_[i] = {proof::truth_of(*holds), kByDiagrams};
             }
         }
     }

@@ -11,7 +11,7 @@ namespace puppetri::verdict {
 
 namespace {
 
-constexpr double kQuickLook_s = 1;
+constexpr double kQuickLook_s = 2;
 
 }  // namespace
 

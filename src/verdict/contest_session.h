@@ -44,7 +44,7 @@ class ContestSession {
     const proof::Marking& bounds();
 
     // The symbolic state space, if it can be made in this share of the time (a first quick look
-    // takes a second at most). Null: not within it.
+    // takes two seconds at most). Null: not within it.
     proof::SymbolicSpace* quick_symbolic();
     proof::SymbolicSpace* symbolic(double fraction);
     // The quick look says that there are too many states to visit one by one.
