@@ -285,5 +285,44 @@ class Draw(Cli):
         self.assertEqual(done.stdout, (EXAMPLES / "04_three_arcs/expected.txt").read_text())
 
 
+class Convert(Cli):
+    CORPUS = ROOT / "tests/corpus/nets"
+
+    def test_endings_decide_and_to_overrides_them(self):
+        net = self.path / "a.net"
+        self.assertEqual(run("convert", self.CORPUS / "untimed.net", self.path / "a.pnml").returncode, 0)
+        self.assertEqual(run("convert", self.path / "a.pnml", net).returncode, 0)
+        self.assertIn("tr source -> p", net.read_text())
+        done = run("convert", net, "-", "--to", "dot")
+        self.assertEqual((done.returncode, done.stdout[:7]), (0, "digraph"))
+        self.assertEqual(run("convert", net, self.path / "a.doc").returncode, 2)
+        self.assertEqual(run("convert", net, "-", "--to", "word").returncode, 2)
+
+    def test_what_a_format_cannot_say_is_refused_by_name_or_dropped_and_told(self):
+        scene, out = EXAMPLES / "03_ball/ball.pup", self.path / "ball.pnml"
+        done = run("convert", scene, out)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("PNML has no movements (place a.to_throw) [not-in-format]", done.stderr)
+        self.assertFalse(out.exists())
+        done = run("convert", scene, out, "--lossy")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("movements were dropped", done.stderr)
+        self.assertIn('<place id="a.with_ball.P4">', out.read_text())
+
+    def test_a_stochastic_net_becomes_a_scene_that_runs(self):
+        scene = self.path / "readers.pup"
+        self.assertEqual(run("convert", self.CORPUS / "readers.xml", scene).returncode, 0)
+        done = run("run", scene, "--for", "2s")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_all_defects_of_a_net_are_told_with_their_lines(self):
+        net = self.path / "bad.net"
+        net.write_text("tr t p!2 -> q\npl p (x)\n")
+        done = run("convert", net, "-", "--to", "pnml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(":1:7: error:", done.stderr)
+        self.assertIn(":2:7: error:", done.stderr)
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])
