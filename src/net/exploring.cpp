@@ -94,6 +94,19 @@ void Engine::pass(std::span<const std::int64_t> numbers) {
     }
 }
 
+// When a token of a place that keeps its order is ready if nothing but its order holds it back:
+// with the last one that waits.
+std::int64_t Engine::held_back(const RichTokens& place) const {
+    const Token* last = nullptr;
+    for (std::uint32_t i = place.head; i < place.order.size(); ++i) {
+        const Token& token = place.pool[place.order[i]];
+        if (is_wait(token.ready_at) && (last == nullptr || token.serial > last->serial)) {
+            last = &token;
+        }
+    }
+    return last == nullptr ? state_.now : last->ready_at;
+}
+
 // Tokens that all last equally long, or that keep their order, are ready in the order of arrival.
 void Engine::collect_unordered() {
     const NetTables& n = *tables_;

@@ -153,6 +153,17 @@ std::vector<Occurrence> sorted_occurrences(const State& s) {
     return list;
 }
 
+bool made_ready(const NetTables& n, std::uint32_t place) {
+    return std::any_of(n.declarations.events.begin(), n.declarations.events.end(),
+                       [place](const EventDraft& e) { return e.makes_ready.value == place; });
+}
+
+std::uint64_t arrivals_before(const RichTokens& place, const Token& token) {
+    return static_cast<std::uint64_t>(
+        std::count_if(place.order.begin() + place.head, place.order.end(),
+                      [&](std::uint32_t i) { return place.pool[i].serial < token.serial; }));
+}
+
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t kChecksumBytes = 8;
 
@@ -190,6 +201,11 @@ void canonical(const Net& net, const State& s, std::vector<std::uint8_t>& out) {
             for (std::uint32_t k = 0; k < width; ++k) {
                 w.number(place.values[std::size_t{place.order[i]} * width + k]);
             }
+            // An event makes the oldest arrival ready, and what is ready at one instant goes by
+            // arrival, too.
+            if (made_ready(n, n.rich[r].place) && (!token.ready || token.ready_at == s.now)) {
+                w.count(1 + arrivals_before(place, token));
+            }
         }
         if (n.rich[r].keeps_order) {
             w.number(std::max<std::int64_t>(0, place.last_ready - s.now));
@@ -204,11 +220,16 @@ void canonical(const Net& net, const State& s, std::vector<std::uint8_t>& out) {
                                                     : 0);
         }
     }
-    for (const Occurrence& o : sorted_occurrences(s)) {
+    const std::vector<Occurrence> occurrences = sorted_occurrences(s);
+    for (const Occurrence& o : occurrences) {
         relative(o.at);
         w.count(o.origin);
         w.count(o.event);
         w.number(o.every);
+        // Repeated ones keep their place among those of one instant.
+        w.count(static_cast<std::uint64_t>(
+            std::count_if(occurrences.begin(), occurrences.end(),
+                          [&o](const Occurrence& x) { return x.sequence < o.sequence; })));
     }
     w.count(s.offered == kNoIndex ? 0 : std::uint64_t{s.offered} + 1);
     w.byte(s.offer_consumed ? 1 : 0);

@@ -138,6 +138,9 @@ void Engine::add_token(std::uint32_t p, std::span<const Value> attributes, std::
         token.ready_at = std::max(token.ready_at, place.last_ready);
         place.last_ready = token.ready_at;
     }
+    if (options_.timekeeper != nullptr && table.keeps_order && !ready && ticks == 0) {
+        token.ready_at = held_back(place);
+    }
     token.ready = token.ready_at <= state_.now;
 
     std::uint32_t slot = 0;

@@ -105,6 +105,28 @@ TEST_CASE("the time left of a token that waits is the same wait, given on [unit]
     CHECK(k.engine.state().counts[net.find_place("Q").value].ready == 1);
 }
 
+TEST_CASE("where order is kept, what lasts no time waits with the one before it [unit]") {
+    Maker m;
+    PlaceDraft& q = m.place("Q");
+    q.attributes.push_back({"n", {ValueKind::kInt, 0}});
+    q.keeps_order = true;
+    q.duration = computed(expr(ExprOp::kMultiply,
+                               Expr::slot(slot(SlotKind::kAttribute, 0), {ValueKind::kInt, 0}),
+                               Expr::time(seconds(1))));
+    for (const Value n : {3, 0}) {
+        InitialToken token;
+        token.attributes = {n};
+        q.tokens.push_back(token);
+    }
+    m.t("out", {"Q"}, {"R"});
+    const Net net = m.net();
+    Kept k(net);
+    CHECK(k.keeper.begun.size() == 1);
+    CHECK(k.engine.turn() == Turn::kWaits);
+    k.pass({1});
+    CHECK(k.engine.state().counts[net.find_place("Q").value].ready == 2);
+}
+
 TEST_CASE("siblings wait under one number, delays and the schedule under their own [unit]") {
     Maker m;
     m.place("Start", 1);

@@ -262,6 +262,7 @@ class Engine final : private Code::Reader {
         return ticks != SimTime::never().ticks && !__builtin_add_overflow(state_.now, ticks, &at);
     }
     void collect_unordered();
+    std::int64_t held_back(const RichTokens& place) const;
     std::uint32_t unordered_from(std::uint32_t rich, std::uint32_t position) const;
 
     // faults.cpp
