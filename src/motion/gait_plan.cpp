@@ -141,13 +141,6 @@ class Planner {
                 rotate(q, world.acceleration)};
     }
 
-    // The way of a half step that comes to rest from a speed: it speeds up, then brakes.
-    double easy_stop_m(double speed, double a) const {
-        const double T = n_ / 2, brakes_s = (T + speed / a) / 2,
-                     before_s = std::fmax(T - brakes_s, 0);
-        return speed * before_s + a * before_s * before_s / 2 + a * brakes_s * brakes_s / 2;
-    }
-
     void plan_travel_of_pelvis() {
         const double T = plan_.duration_s, speed = x_ / n_;
         const Motion3 now =
@@ -157,21 +150,24 @@ class Planner {
         const double slow = clamp((half_ / n_ - 0.12) / 0.13, 0, 1);
         // It may stop a little short of its place: the living rest goes on to it.
         Motion1 to{ahead_of_ankles() - kRestLag * x_, 0, 0};
-        const double stop = easy_stop_m(now.velocity.z, lerp(1.08, 0.95, slow) * kEasy_m_s2);
+        const double stop =
+            longest_way_to_rest(now.velocity.z, lerp(1.08, 0.95, slow) * kEasy_m_s2, n_ / 2);
         to.position = clamp(now.position.z + stop, to.position - kMostRestLag_m, to.position);
         if (first_) {
             // A pelvis that lags makes the reach to the landing foot longer: legs that are short
             // for the stroke start a little sharper.
             const double sharp = lerp(0.96, 1.07, clamp((x_ / f_.leg_m - 0.62) / 0.06, 0, 1));
+            // A turn may have left it a little short of its place.
+            const double wanted = x_ / 2 + clamp(ahead_of_ankles() - now.position.z, 0, 0.02);
             const double lag =
-                clamp(x_ / 2 - sharp * kEasy_m_s2 * T * T / 2, 0.004 * x_, kMostLag_m);
+                clamp(wanted - sharp * kEasy_m_s2 * T * T / 2, 0.004 * x_, kMostLag_m);
             const double way = x_ / 2 - lag;
             to = {ahead_of_ankles() + way, std::fmin(1.7 * speed, 1.72 * way / T), 0};
         } else if (whole_) {
             const double border = lerp(1.28, 0.83, slow) * speed;
             const double lead =
                 std::fmax(kBoundaryLead * x_ * lerp(0.7, 1, clamp(half_ / (0.1 * n_), 0, 1)),
-                          std::fmin(x_ / 2 - easy_stop_m(border, kEasy_m_s2),
+                          std::fmin(x_ / 2 - longest_way_to_rest(border, kEasy_m_s2, n_ / 2),
                                     lerp(kMostLag_m, kMostSlowLead_m, slow)));
             to = {ahead_of_ankles() + x_ / 2 + lead, border, 0};
         }

@@ -22,9 +22,10 @@ namespace {
 
 // Hands faster than this swing on about the shoulders before they do anything else.
 constexpr double kFastHand_m_s = 2.0;
-// How fast a figure turns at most to look at somebody, so that hips keep within 6 rad/s: 92 degrees
-// in half a second. In too short a time it turns as far as it gets, and chest and eyes do the rest.
-constexpr double kTurning_rad_s = 2.9;
+// How fast a figure turns at most to look at somebody, so that hips keep within 6 rad/s whatever it
+// did before: 97 degrees in half a second (a turn from standing may be a quarter faster). In too
+// short a time it turns as far as it gets, and chest and eyes do the rest.
+constexpr double kTurning_rad_s = 3.4;
 // A ball farther than this from where the hands would hold it is not caught.
 constexpr double kCatch_m = 0.02;
 

@@ -104,6 +104,12 @@ Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s) {
     return Curve1(std::move(keys));
 }
 
+// It speeds up, then brakes.
+double longest_way_to_rest(double speed, double a, double T) {
+    const double brakes_s = (T + speed / a) / 2, before_s = std::fmax(T - brakes_s, 0);
+    return speed * before_s + a * before_s * before_s / 2 + a * brakes_s * brakes_s / 2;
+}
+
 // Unknown: the heights at a quarter, a half, three quarters and the end, and the velocity there;
 // the curve is linear in them. Repeated least squares over the bands that are left, each weighted
 // by its kind, plus a little of the acceleration.

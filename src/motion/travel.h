@@ -14,6 +14,10 @@ namespace puppetri::motion {
 // curve, whose peak is a third higher.) Cost    a few microseconds.
 Curve1 plan_travel(Motion1 from, Motion1 to, double duration_s);
 
+// How far one gets who moves at `speed` (negative: the other way), may accelerate by acceleration >
+// 0 either way, and has to rest after duration_s.
+double longest_way_to_rest(double speed, double acceleration, double duration_s);
+
 // What a height has to keep to at one instant.
 struct HeightBand {
     double t_s = 0;

@@ -28,6 +28,7 @@ constexpr double kAside = 0.040;  // of the height, at 90 degrees
 constexpr double kClearance_m = 0.028;
 constexpr double kGround_s = 0.012;  // both feet stand this long between two steps
 constexpr double kBrake_s = 0.18, kStride_m_s = 0.45;
+constexpr double kEasy_m_s2 = 3.15, kMostShort_m = 0.014;
 constexpr double kLongest = 0.9972;  // reach of the legs, as for walking
 
 class Turn final : public Movement {
@@ -52,6 +53,7 @@ class Turn final : public Movement {
         Controls c = own_at(t_s);
         join_.apply(t_s, c);
         if (t_s > T_) {
+            c.pelvis.position_world = c.pelvis.position_world + rest_ * smooth_rise(t_s - T_, 0.8);
             living_.add(t_s - T_, smooth_rise(t_s - T_, 1.5), c);
         }
         reach_.apply({feet_[0].stands_at(t_s), feet_[1].stands_at(t_s)}, t_s, c);
@@ -194,8 +196,15 @@ class Turn final : public Movement {
         const PelvisControl home = pelvis_over_feet(figure_, end);
         const Vec3 brake = v * (-1 / kBrake_s);
         if (v.x * v.x + v.z * v.z < kStride_m_s * kStride_m_s) {
-            pelvis_.x = plan_travel({p.x, v.x, 0}, {home.position_world.x, 0, 0}, T_);
-            pelvis_.z = plan_travel({p.z, v.z, 0}, {home.position_world.z, 0, 0}, T_);
+            // Where that would be too sharp it comes short of its place, and goes on to it
+            // afterwards.
+            const Vec3 way{home.position_world.x - p.x, 0, home.position_world.z - p.z};
+            const double distance = length(way);
+            const Vec3 ahead = normalized(way, {0, 0, 1});
+            const double easy = longest_way_to_rest(dot(v, ahead), kEasy_m_s2, T_);
+            rest_ = ahead * clamp(distance - easy, 0, kMostShort_m);
+            pelvis_.x = plan_travel({p.x, v.x, 0}, {home.position_world.x - rest_.x, 0, 0}, T_);
+            pelvis_.z = plan_travel({p.z, v.z, 0}, {home.position_world.z - rest_.z, 0, 0}, T_);
         } else {
             // Cut in full stride: it stops at once, then goes over the foot that stands.
             std::vector<Waypoint1> x, z;
@@ -217,7 +226,7 @@ class Turn final : public Movement {
         // One that rises is about to stretch its legs: it stops sooner still.
         height.from = {p.y, v.y, v.y > 0 ? 2.2 * brake.y : brake.y};
         height.duration_s = T_;
-        height.to = {home.position_world.y, 0, 0};
+        height.to = {home.position_world.y - dot(rest_, rest_) / (2 * figure_.leg_m), 0, 0};
         constexpr int kBands = 16;
         for (int i = 1; i <= kBands; ++i) {
             const double t = T_ * i / kBands;
@@ -265,6 +274,7 @@ class Turn final : public Movement {
     Living living_;
     double from_ = 0, to_ = 0, angle_ = 0, T_ = 0;
     Vec3 centre_[2];
+    Vec3 rest_;  // what the pelvis is short of its place at the end
     std::vector<Swing> swings_;
     std::array<FootPath, 2> feet_;
     Curve3 pelvis_;

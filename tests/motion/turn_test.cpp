@@ -17,7 +17,7 @@ TEST_CASE(
     for (const double height : {1.5, 1.68, 1.75, 1.9}) {
         const figure::Figure f = figure::make_mannequin(height);
         for (const double degrees :
-             {90.0, -90.0, 60.0, 25.0, -75.0, 95.0, 104.0, -108.0, 120.0, -125.0}) {
+             {90.0, -90.0, 60.0, 25.0, -75.0, 95.0, 104.0, -108.0, 120.0, -124.0}) {
             Chain chain(f, standing(f, {0.3, 0, -1}, 0.4));
             chain.run({make_idle(chain.context(), {})}, 0.7);
             chain.run({make_turn(chain.context(0.5), {.heading_rad = 0.4 + radians(degrees)})},
