@@ -8,14 +8,16 @@
 //   threads/MODEL  two threads, real time; counter efficiency: their rate over the rate of two
 //                  processes that explore the net independently at the same time
 #include <benchmark/benchmark.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,7 @@ constexpr Model kModels[] = {{"HouseConstruction-PT-00005", 1187984, 7191110},
                              {"LamportFastMutEx-PT-4", 1914784, 9046048},
                              {"Dekker-PT-015", 278528, 16834575}};
 
+std::string program;  // the path of this program
 const std::string kNets = PUP_SOURCE_DIR "/../shared/nets/mcc/";
 
 PlainNet read(const Model& model) { return test::tiny_pnml(kNets + model.name + "/model.pnml"); }
@@ -148,18 +151,34 @@ double seconds_now() {
         .count();
 }
 
-// The peak memory in bytes of a process that does this.
-template <class Work>
-double peak_of(Work&& work) {
-    const pid_t child = fork();
-    if (child == 0) {
-        work();
-        _exit(0);
+// The peak memory in bytes of a fresh process of this program that explores just one model
+// ("none": nothing).
+double peak_of(const std::string& model) {
+    const std::string command = "'" + program + "' --peak " + model;
+    std::FILE* pipe = popen(command.c_str(), "r");
+    char line[64] = "";
+    const bool read = pipe != nullptr && std::fgets(line, sizeof line, pipe) != nullptr;
+    if (pipe != nullptr) {
+        pclose(pipe);
     }
-    int status = 0;
-    rusage used{};
-    wait4(child, &status, 0, &used);
-    return static_cast<double>(used.ru_maxrss) * 1024;
+    return read ? 1024 * std::strtod(line, nullptr) : 0;
+}
+
+int print_peak(const std::string& model) {
+    PlainNet net;
+    for (const Model& m : kModels) {
+        if (model == m.name) {
+            net = read(m);
+        }
+    }
+    benchmark::DoNotOptimize(explored(net, 1).edges);
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.rfind("VmHWM:", 0) == 0) {
+            std::puts(line.substr(6).c_str());
+        }
+    }
+    return 0;
 }
 
 double seconds_of_two_processes(const PlainNet& net) {
@@ -181,15 +200,14 @@ double seconds_of_two_processes(const PlainNet& net) {
 
 void explore_benchmark(benchmark::State& state, const Model& model) {
     const PlainNet net = read(model);
-    const double peak = peak_of([&] { benchmark::DoNotOptimize(explored(net, 1).edges); });
-    const double trivial = peak_of([] { benchmark::DoNotOptimize(explored(PlainNet(), 1).edges); });
+    const double bytes = peak_of(model.name) - peak_of("none");
     Counts counts;
     for (auto _ : state) {
         counts = explored(net, 1);
     }
     if (check(state, model, counts)) {
         state.SetItemsProcessed(static_cast<std::int64_t>(model.edges) * state.iterations());
-        state.counters["bytes_per_state"] = (peak - trivial) / static_cast<double>(model.states);
+        state.counters["bytes_per_state"] = bytes / static_cast<double>(model.states);
     }
 }
 
@@ -225,6 +243,10 @@ void threads_benchmark(benchmark::State& state, const Model& model) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    program = argv[0];
+    if (argc == 3 && std::string(argv[1]) == "--peak") {
+        return print_peak(argv[2]);
+    }
     for (const Model& model : kModels) {
         const std::string name = model.name;
         const auto add = [&](const char* kind, auto function) {

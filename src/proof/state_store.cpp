@@ -67,11 +67,12 @@ std::uint32_t StateStore::add_segment() {
         if (block + 1 >= kBlocks) {
             return kNoState;
         }
-        // The first block of a small net is mostly untouched, which huge pages would not leave it.
-        PageBuffer buffer(segment_bytes_ * kSegmentsPerBlock, block > 0, false);
+        // The first blocks of a small net are partly untouched, which huge pages would not leave.
+        const bool huge = block > 1;
+        PageBuffer buffer(segment_bytes_ * kSegmentsPerBlock, huge, false);
         PageBuffer parents;
         if (with_parents_) {
-            parents = PageBuffer(std::uint64_t{kBlock} * 4, block > 0, false);
+            parents = PageBuffer(std::uint64_t{kBlock} * 4, huge, false);
         }
         if (buffer.data() == nullptr || (with_parents_ && parents.data() == nullptr)) {
             return kNoState;

@@ -170,10 +170,8 @@ Decision decide_dead(ContestSession& session) {
     const proof::Reduction reduced = proof::reduce(session.plain(), goal, session.share(0.2, 2));
     proof::ExploreOptions options;
     options.find_dead = true;
-    options.stop_when_found = true;
-    options.reduce = true;
     const auto explored = [&](const proof::Budget& budget) {
-        const proof::Exploration e = proof::explore(reduced.net, options, budget);
+        const proof::Exploration e = proof::seek(reduced.net, options, budget);
         return e.dead.found                            ? Truth::kTrue
                : e.ended == Ended::kDone && e.complete ? Truth::kFalse
                                                        : Truth::kUnknown;
