@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 constexpr std::uint64_t kPivotsPerLook = 40;
-constexpr std::uint32_t kDeepest = 4000;
+constexpr std::uint32_t kDeepest = 1000;
 constexpr std::uint32_t kMostTraps = 2000;
 
 // The linear program of a net: places as changes from the initial marking.
@@ -189,7 +189,8 @@ class Search {
         : options_(options),
           tree_(std::move(tree)),
           program_(net, options.emptied),
-          meter_(budget, "state equation") {
+          meter_(budget, "state equation"),
+          cut_seconds_(std::min(1.0, 0.3 * budget.seconds)) {
         program_.prepare();
     }
 
@@ -270,7 +271,7 @@ class Search {
                 }
                 const std::uint32_t p = tree_.sums[child.sum].terms[0].place;
                 if (most[p] == -2) {
-                    most[p] = bound_of(p);
+                    most[p] = meter_.seconds() > cut_seconds_ ? -1 : bound_of(p);
                 }
                 fit = most[p] >= 0;
                 const std::int64_t gap = most[p] - child.limit;
@@ -282,7 +283,7 @@ class Search {
                 total += most[p];
                 least_gap = least_gap < 0 ? gap : std::min(least_gap, gap);
             }
-            if (!fit || sum.terms.empty() || meter_.seconds() > kCutSeconds) {
+            if (!fit || sum.terms.empty()) {
                 continue;
             }
             std::sort(sum.terms.begin(), sum.terms.end(),
@@ -305,7 +306,7 @@ class Search {
         LinearProgram::Value best;
         ++answer_.programs;
         const auto answer =
-            program_.program.maximize(program_.change(p), 50 * kPivotsPerLook, best);
+            program_.program.maximize(program_.change(p), 10 * kPivotsPerLook, best);
         if (answer != LinearProgram::Answer::kFeasible || best.numerator < -(1ll << 40) ||
             best.numerator > 1ll << 40) {
             return -1;
@@ -528,12 +529,11 @@ class Search {
         return Kind::kCandidate;
     }
 
-    static constexpr double kCutSeconds = 1;
-
     StateEquationOptions options_;
     CaseTree tree_;
     NetProgram program_;
     Meter meter_;
+    double cut_seconds_;
     std::vector<std::int64_t> initially_;
     std::vector<std::uint32_t> variable_;
     StateEquationAnswer answer_;

@@ -11,6 +11,10 @@ namespace puppetri::proof {
 
 namespace {
 
+// In a ring of n no two of n (n - 1) / 2 pairs can be exchanged; larger ones are not looked
+// through.
+constexpr std::uint32_t kMostExchanges = 100'000;
+
 // All there is about a transition.
 using Signature = std::tuple<std::vector<std::uint64_t>, std::uint32_t, std::uint8_t>;
 
@@ -33,12 +37,9 @@ Signature signature(const PlainNet& net, std::uint32_t t,
 // Is exchanging the places an automorphism, for some permutation of transitions? It is iff the
 // renamed transitions are the old ones, counted with multiplicity. Only those that touch a moved
 // place can differ.
-bool is_automorphism(const PlainNet& net, const std::vector<std::uint32_t>& place_to,
+bool is_automorphism(const PlainNet& net, const std::vector<std::uint32_t>& same,
+                     const std::vector<std::uint32_t>& place_to,
                      const std::vector<std::uint32_t>& touched) {
-    std::vector<std::uint32_t> same(place_to.size());
-    for (std::uint32_t p = 0; p < same.size(); ++p) {
-        same[p] = p;
-    }
     std::vector<Signature> before, after;
     for (const std::uint32_t t : touched) {
         before.push_back(signature(net, t, same));
@@ -82,7 +83,12 @@ void collect(std::span<const std::string_view> names, bool places, Instances& ou
 
 class Finder {
  public:
-    Finder(const PlainNet& net) : net_(net), used_(net.place_count(), 0), of_(net.place_count()) {
+    explicit Finder(const PlainNet& net)
+        : net_(net), used_(net.place_count(), 0), of_(net.place_count()) {
+        for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+            same_.push_back(p);
+        }
+        to_ = same_;
         for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
             for (const auto* rows : {&net.takes, &net.gives, &net.reads, &net.unless}) {
                 for (const net::Weighted& w : rows->row(t)) {
@@ -121,22 +127,24 @@ class Finder {
     Symmetry result;
 
  private:
-    bool exchanges(const Instance& a, const Instance& b) const {
-        std::vector<std::uint32_t> to(net_.place_count());
-        for (std::uint32_t p = 0; p < to.size(); ++p) {
-            to[p] = p;
-        }
+    bool exchanges(const Instance& a, const Instance& b) {
+        --exchanges_left_;
         std::vector<std::uint32_t> touched;
         for (std::size_t k = 0; k < a.places.size(); ++k) {
             const std::uint32_t p = a.places[k].second, q = b.places[k].second;
-            to[p] = q;
-            to[q] = p;
+            to_[p] = q;
+            to_[q] = p;
             touched.insert(touched.end(), of_[p].begin(), of_[p].end());
             touched.insert(touched.end(), of_[q].begin(), of_[q].end());
         }
         std::sort(touched.begin(), touched.end());
         touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-        return is_automorphism(net_, to, touched);
+        const bool is = is_automorphism(net_, same_, to_, touched);
+        for (std::size_t k = 0; k < a.places.size(); ++k) {
+            to_[a.places[k].second] = a.places[k].second;
+            to_[b.places[k].second] = b.places[k].second;
+        }
+        return is;
     }
 
     void add(const std::vector<Instance*>& group) {
@@ -158,6 +166,8 @@ class Finder {
 
     const PlainNet& net_;
     std::vector<std::uint8_t> used_;
+    std::vector<std::uint32_t> same_, to_;  // the identity, and what is tried
+    std::uint32_t exchanges_left_ = kMostExchanges;
     std::vector<std::vector<std::uint32_t>> of_;  // transitions per place
 };
 

@@ -64,50 +64,6 @@ class Check {
         return clusters();
     }
 
-    bool every_circuit_takes_time() const {
-        // Transitions joined through places that take no time must not form a ring.
-        const std::uint32_t count = net_.transition_count();
-        std::vector<std::vector<std::uint32_t>> next(count), consumers(picture_.place_count());
-        std::vector<std::uint32_t> waits(count, 0);
-        for (std::uint32_t t = 0; t < count; ++t) {
-            for (const net::Weighted& w : picture_.takes.row(t)) {
-                consumers[w.place].push_back(t);
-            }
-        }
-        for (std::uint32_t t = 0; t < count; ++t) {
-            for (const net::Weighted& w : picture_.gives.row(t)) {
-                const std::uint32_t d =
-                    w.place < net_.place_count() ? tables_.place[w.place].duration : net::kNoIndex;
-                if (d != net::kNoIndex && tables_.durations[d].kind == DurationKind::kConstant &&
-                    tables_.durations[d].ticks > 0) {
-                    continue;
-                }
-                for (const std::uint32_t u : consumers[w.place]) {
-                    next[t].push_back(u);
-                    ++waits[u];
-                }
-            }
-        }
-        std::vector<std::uint32_t> open;
-        for (std::uint32_t t = 0; t < count; ++t) {
-            if (waits[t] == 0) {
-                open.push_back(t);
-            }
-        }
-        std::uint32_t done = 0;
-        while (!open.empty()) {
-            const std::uint32_t t = open.back();
-            open.pop_back();
-            ++done;
-            for (const std::uint32_t u : next[t]) {
-                if (--waits[u] == 0) {
-                    open.push_back(u);
-                }
-            }
-        }
-        return done == count;
-    }
-
  private:
     std::string place(std::uint32_t p) const {
         return "place " + std::string(net_.place(net::PlaceIndex{p}).path);
@@ -228,6 +184,81 @@ class Check {
 
 }  // namespace
 
+// Endlessly many firings in one instant would go round: who takes a token that was given in the
+// same instant depends on who gave it, and each firing takes one. So it is enough that no circuit
+// goes through places only whose tokens may be taken at once.
+bool instants_end(const net::Net& net) {
+    const NetTables& tables = net.tables();
+    const PlainNet picture = plain(net).net;
+    const std::uint32_t count = net.transition_count();
+    std::vector<std::uint8_t> takes_time(net.place_count(), 0), waits(count, 0);
+    for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+        const std::uint32_t d = tables.place[p].duration;
+        takes_time[p] = d != net::kNoIndex && tables.durations[d].kind == DurationKind::kConstant &&
+                                tables.durations[d].ticks > 0
+                            ? 1
+                            : 0;
+    }
+    for (const net::Special& s : tables.specials) {
+        for (const net::ArcTable& arc : s.arcs) {
+            if (arc.kind == ArcKind::kTakeNow || arc.kind == ArcKind::kTakeAllNow) {
+                takes_time[arc.place] = 0;
+            }
+        }
+        for (const net::OutputTable& o : s.outputs) {
+            if (o.lasts.valid()) {
+                takes_time[o.place] = 0;
+            }
+        }
+        if (s.delay != net::kNoIndex) {
+            const net::DelayTable& delay = tables.delays[s.delay];
+            waits[s.transition] = delay.duration.kind == DurationKind::kConstant &&
+                                          delay.duration.ticks > 0 && delay.servers == 1
+                                      ? 1
+                                      : 0;
+        }
+    }
+    // Firings of a transition that waits before each of them are as good as time.
+    std::vector<std::vector<std::uint32_t>> consumers(net.place_count()), next(count);
+    std::vector<std::uint32_t> before(count, 0);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (picture.takes.row(t).empty() && waits[t] == 0) {
+            return false;  // a source, or it takes all, be it nothing
+        }
+        for (const net::Weighted& w : picture.takes.row(t)) {
+            consumers[w.place].push_back(t);
+        }
+    }
+    for (std::uint32_t t = 0; t < count; ++t) {
+        for (const net::Weighted& w : picture.gives.row(t)) {
+            for (const std::uint32_t u : consumers[w.place]) {
+                if (takes_time[w.place] == 0 && waits[u] == 0) {
+                    next[t].push_back(u);
+                    ++before[u];
+                }
+            }
+        }
+    }
+    std::vector<std::uint32_t> open;
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (before[t] == 0) {
+            open.push_back(t);
+        }
+    }
+    std::uint32_t done = 0;
+    while (!open.empty()) {
+        const std::uint32_t t = open.back();
+        open.pop_back();
+        ++done;
+        for (const std::uint32_t u : next[t]) {
+            if (--before[u] == 0) {
+                open.push_back(u);
+            }
+        }
+    }
+    return done == count;
+}
+
 TimedLiveness timed_liveness(const net::Net& net, const Budget& budget) {
     TimedLiveness out;
     Plain picture = plain(net);
@@ -251,7 +282,7 @@ TimedLiveness timed_liveness(const net::Net& net, const Budget& budget) {
     }
     out.live_unless_stopped = true;
     out.theorem = std::string(structure.theorem) + ", and every choice stays free in time";
-    out.needs_time_goes_on = !net.paced() && !check.every_circuit_takes_time();
+    out.needs_time_goes_on = !net.paced() && !instants_end(net);
     for (const net::Special& s : net.tables().specials) {
         out.needs_clean_ends = out.needs_clean_ends || !s.must_be_clean.empty();
     }

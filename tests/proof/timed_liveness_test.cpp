@@ -149,6 +149,25 @@ TEST_CASE("what is live in time by theorem is live in the graph of all timed run
     CHECK(not_claimed > 100);
 }
 
+TEST_CASE("where every circuit takes time no instant goes round [law]") {
+    Chance chance(102);
+    int ends = 0, goes_round = 0;
+    for (int round = 0; round < rounds(1000); ++round) {
+        const auto net = net::compile(random_draft(chance));
+        if (!net) {
+            continue;
+        }
+        Budget budget;
+        budget.states = 300;
+        const TimedGraph timed = timed_exact_graph({.net = *net, .budget = budget});
+        const bool endless = instant_may_never_end(timed.graph);
+        CHECK_FALSE((endless && instants_end(*net)));
+        (endless ? goes_round : ends) += instants_end(*net) || endless ? 1 : 0;
+    }
+    CHECK(ends > 50);
+    CHECK(goes_round > 20);
+}
+
 TEST_CASE("a delay or a priority in a choice forbids the theorem, elsewhere it does not [unit]") {
     net::Maker m;
     m.place("a", 1, net::lasts(1));

@@ -64,6 +64,12 @@ struct TimedLiveness {
 };
 TimedLiveness timed_liveness(const net::Net& net, const Budget& budget);
 
+// In no instant do endlessly many firings happen: every circuit of the net goes through a place
+// with a constant duration above 0, or a transition with such a delay, and nothing is a source
+// otherwise. Then time goes on, unless a run stops with a fault or nothing is left to happen. Gives
+// false where that is not known. Cost  linear.
+bool instants_end(const net::Net& net);
+
 // Tokens that carry an actor or a prop are conserved one by one: each firing hands every identity
 // that it takes from `places` to exactly one token that it gives to them, and makes none. Then each
 // identity of an initial token is for ever in exactly one of the places.
