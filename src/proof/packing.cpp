@@ -16,7 +16,7 @@ namespace puppetri::proof {
 namespace {
 
 constexpr std::uint32_t kMostForBasis = 2000;  // places: elimination is cubic
-constexpr double kBasis_s = 2;
+constexpr double kBasis_s = 0.3;
 constexpr std::uint32_t kGoodEnough = 56;  // bits: shorter states are not worth computed places
 
 std::uint32_t bits_for(std::uint64_t largest) {

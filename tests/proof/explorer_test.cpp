@@ -259,6 +259,78 @@ TEST_CASE("fields grow as far as the net goes, also while threads share them [la
     }
 }
 
+// The same net with `factor` times as many tokens everywhere, each place `places` times and each
+// transition `transitions` times.
+PlainNet enlarged(const PlainNet& net, std::uint32_t factor, std::uint32_t places,
+                  std::uint32_t transitions) {
+    PlainNet out;
+    for (std::uint32_t k = 0; k < places; ++k) {
+        for (const std::uint32_t count : net.initial) {
+            out.initial.push_back(count * factor);
+        }
+    }
+    const auto copy = [&](const net::Rows<net::Weighted>& from, net::Rows<net::Weighted>& to,
+                          std::uint32_t t) {
+        for (std::uint32_t k = 0; k < places; ++k) {
+            for (const net::Weighted& w : from.row(t)) {
+                to.items.push_back({w.place + k * net.place_count(), w.weight * factor});
+            }
+        }
+        to.starts.push_back(static_cast<std::uint32_t>(to.items.size()));
+    };
+    for (std::uint32_t k = 0; k < transitions; ++k) {
+        for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
+            copy(net.takes, out.takes, t);
+            copy(net.gives, out.gives, t);
+            copy(net.reads, out.reads, t);
+            copy(net.unless, out.unless, t);
+            out.level.push_back(net.level[t]);
+            out.optional.push_back(net.optional[t]);
+        }
+    }
+    out.has_levels = net.has_levels;
+    return out;
+}
+
+TEST_CASE("large counts, many places and many transitions change nothing but the numbers [law]") {
+    struct Size {
+        std::uint32_t factor, places, transitions;
+    };
+    std::uint64_t compared = 0, longest = 0;
+    for (std::uint64_t i = 0; i < 120 * times(); ++i) {
+        RandomStream stream = stream_of(0xE4, i);
+        const PlainNet net = test::random_plain_net(stream, {.conserving = i % 2 == 0});
+        const NaiveGraph g = naive_graph(net, 400);
+        if (!g.complete) {
+            continue;
+        }
+        Exploration small = explore(net, {.find_dead = true}, {});
+        for (const Size size : {Size{5000, 1, 1}, Size{1 << 20, 1, 1}, Size{1, 9, 1},
+                                Size{300, 3, 1}, Size{1, 1, 400}, Size{2000, 2, 300}}) {
+            ++compared;
+            const PlainNet large = enlarged(net, size.factor, size.places, size.transitions);
+            const Exploration e = explore(large, {.find_dead = true}, {});
+            INFO("net " << i << ", tokens x " << size.factor << ", places x " << size.places
+                        << ", transitions x " << size.transitions);
+            CHECK(e.complete);
+            CHECK(e.states == small.states);
+            CHECK(e.edges == small.edges * size.transitions);
+            CHECK(e.dead.found == small.dead.found);
+            CHECK(e.max_tokens_per_marking ==
+                  small.max_tokens_per_marking * size.factor * size.places);
+            for (std::uint32_t p = 0; p < e.bounds.size(); ++p) {
+                CHECK(e.bounds[p] == small.bounds[p % net.place_count()] * size.factor);
+            }
+            longest = std::max<std::uint64_t>(longest, e.bits_per_state);
+            const PlainGraph graph = build_graph(large, {}, nullptr, {});
+            CHECK(graph.graph.size() == e.states);
+            CHECK(graph.graph.edges.items.size() == e.edges);
+        }
+    }
+    CHECK(compared > 200);
+    CHECK(longest > 128);  // more than two words
+}
+
 TEST_CASE("threads agree on random nets that are large enough for them [agree]") {
     std::uint64_t compared = 0;
     for (std::uint64_t i = 0; i < 400 && compared < 6 * times(); ++i) {
