@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `puppetri explore NET`: all reachable markings, counted one by one.
+#if defined(__GLIBC__) || defined(__linux__)
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -77,21 +81,31 @@ std::string json_of(const Exploration& e, const std::string& ended, bool exact,
     return json.take();
 }
 
+Checked<net::Net> compiled_net(const std::string& path) {
+    const auto file = io::load_net(path);
+    if (!file) {
+        return Unexpected(file.error());
+    }
+    return net::compile(file->draft);
+}
+
+void give_back_memory() {
+#if defined(__GLIBC__)
+    malloc_trim(0);
+#endif
+}
+
 int run(const Arguments& arguments) {
     const auto watched = WatchedBudget::from(arguments);
     if (!watched) {
         return kBadInput;
     }
-    const auto file = io::load_net(arguments.text("net"));
-    if (!file) {
-        say_diagnostics(file.error());
-        return kBadInput;
-    }
-    const auto net = net::compile(file->draft);
+    const auto net = compiled_net(arguments.text("net"));
     if (!net) {
         say_diagnostics(net.error());
         return kBadInput;
     }
+    give_back_memory();  // of the file, which may be larger than what its net is explored in
     const proof::Plain plain = proof::plain(*net);
     if (plain.unsound) {
         say_error("this net has no untimed picture of counts, so nothing is explored: " +
