@@ -97,6 +97,22 @@ SimTime Driver::begin(ActionIndex action, ActivityIndex, SimTime, SimTime durati
     return {ticks};
 }
 
+// Everything has settled but what firings of this instant have raised: events of the same instant
+// from outside and of movements come before that.
+bool Driver::raised_is_next() const {
+    const State& s = engine.state();
+    if (s.offered != kNoIndex || s.occurrences.empty() || s.occurrences.front().at > s.now ||
+        s.occurrences.front().origin != Occurrence::kRaised) {
+        return false;
+    }
+    for (std::uint32_t t = 0; t < world_->net->transition_count(); ++t) {
+        if (engine.fireable({t})) {
+            return false;
+        }
+    }
+    return true;
+}
+
 // The outside may act in an instant that has settled. True: it does.
 bool Driver::ask_outside(Step& out) {
     const std::uint32_t outer = outer_events();
@@ -142,6 +158,9 @@ Driver::Did Driver::step(Step& out) {
     }
     for (;;) {
         const std::int64_t before = engine.state().now;
+        if (raised_is_next() && ask_outside(out)) {
+            return engine.faulted() ? Did::kFault : Did::kStep;
+        }
         if (engine.settled()) {
             settled_ = true;
             if (form_ != ClockForm::kExact) {

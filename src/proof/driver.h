@@ -93,6 +93,7 @@ class Driver final : private net::Timekeeper, private net::MovementHost {
                    : 0;
     }
     bool ask_outside(Step& out);
+    bool raised_is_next() const;
 
     bool settled_ = false, idle_ = false, from_outside_ = false;
     std::int64_t next_number_ = 1;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,8 +81,8 @@ struct Played {
 };
 
 Played play(const net::Net& net, net::Chooser& chooser, std::uint64_t seed = 1,
-            std::uint64_t firings = kFirings, std::int64_t until = kUntil,
-            std::uint32_t events = 0) {
+            std::uint64_t firings = kFirings, std::int64_t until = kUntil, std::uint32_t events = 0,
+            std::span<const Script::Outside> outside = {}) {
     net::EngineOptions options;
     options.free = events != 0;
     options.free_events = events;
@@ -89,6 +90,9 @@ Played play(const net::Net& net, net::Chooser& chooser, std::uint64_t seed = 1,
     options.seed = seed;
     Engine engine(net, chooser, options);
     engine.start();
+    for (const Script::Outside& o : outside) {
+        engine.occur(o.event, o.at);
+    }
     Played played;
     for (;;) {
         if (played.firings.size() == firings) {
@@ -386,8 +390,7 @@ TEST_CASE("with events from outside no run leaves the readiness graph, nor the c
             const Runs states(g, *net);
             net::ExhaustiveChooser all;
             std::size_t tries = 0;
-            do {
-                const Played played = play(*net, all, 1, 5, kUntil, 2);
+            const auto check = [&](const Played& played) {
                 const std::size_t n = followed(g.graph, states.looks, played);
                 firings += n;
                 const bool fault = played.end == "fault" && !played.firings.empty();
@@ -395,7 +398,20 @@ TEST_CASE("with events from outside no run leaves the readiness graph, nor the c
                     FAIL_CHECK("net " << i << "\n"
                                       << show(draft) << played.text() << "\nfollowed " << n);
                 }
+            };
+            do {
+                check(play(*net, all, 1, 5, kUntil, 2));
             } while (all.next() && ++tries < 200 && failures < 3);
+            // As a file says it: also at instants at which others raise events.
+            net::RandomChooser random;
+            for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+                const Script::Outside outside[] = {
+                    {{static_cast<std::int64_t>(stream.below(5)) * kRandomNetUnit},
+                     {static_cast<std::uint32_t>(stream.below(draft.events.size()))}},
+                    {{static_cast<std::int64_t>(stream.below(5)) * kRandomNetUnit},
+                     {static_cast<std::uint32_t>(stream.below(draft.events.size()))}}};
+                check(play(*net, random, seed, 12, 20 * kRandomNetUnit, 0, outside));
+            }
             // What comes from outside can be played, too, where nothing else happens at its
             // instant that would come later.
             for (std::uint32_t s = 0; classes && s < g.graph.size() && s < 40; ++s) {
