@@ -146,11 +146,11 @@ Decision live_by_graph(ContestSession& session, const proof::Budget& budget) {
     return {proof::truth_of(live), "EXPLICIT STATE_COMPRESSION"};
 }
 
-Decision live_by_diagrams(ContestSession& session, proof::SymbolicSpace* space) {
+Decision live_by_diagrams(ContestSession& session, proof::SymbolicSpace* space, double fraction) {
     if (space == nullptr) {
         return {};
     }
-    space->renew(session.share(0.6));
+    space->renew(session.share(fraction));
     for (std::uint32_t t = 0; t < session.plain().transition_count(); ++t) {
         const std::optional<bool> live = space->live(t);
         if (!live.has_value()) {
@@ -181,14 +181,14 @@ Decision liveness(ContestSession& session) {
             return d;
         }
     }
-    Decision result;
-    if (!session.too_many_to_visit()) {
+    Decision result = live_by_diagrams(session, session.quick_symbolic(), 0.1);
+    if (result.truth == Truth::kUnknown && !session.too_many_to_visit()) {
         proof::Budget budget = session.share(0.6);
         budget.states = ContestSession::kVisited;
         result = live_by_graph(session, budget);
     }
     if (result.truth == Truth::kUnknown) {
-        result = live_by_diagrams(session, session.symbolic(0.7));
+        result = live_by_diagrams(session, session.symbolic(0.7), 1);
     }
     return result;
 }

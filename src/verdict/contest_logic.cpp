@@ -223,10 +223,8 @@ class Logic {
                         [&](std::uint32_t i) { return !is_linear(questions_[i].formula); })
                 ? proof::predecessors(graph)
                 : net::Rows<std::uint32_t>();
-        proof::Budget rest = session_.share(fraction);
-        rest.progress = nullptr;  // several threads would tell at once
         std::atomic<std::uint32_t> next{0};
-        in_parallel(session_.threads(), [&] {
+        in_parallel(session_.threads(), [&](unsigned thread) {
             proof::CtlChecker checker(graph, backwards);
             for (;;) {
                 const std::uint32_t k = next.fetch_add(1);
@@ -234,6 +232,10 @@ class Logic {
                     return;
                 }
                 const std::uint32_t i = open_now[k];
+                proof::Budget rest = session_.share(fraction);
+                if (thread != 0) {
+                    rest.progress = nullptr;  // one tells for all
+                }
                 const Temporal& formula = questions_[i].formula;
                 const Truth truth =
                     is_linear(formula)

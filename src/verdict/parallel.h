@@ -9,22 +9,22 @@
 
 namespace puppetri::verdict {
 
-// Calls work() once on each of so many threads, this one included, and waits for all. Each call has
-// to find its share of the work by itself; one call must be able to do all of it.
+// Calls work(number) once on each of so many threads (0: this one), and waits for all. Each call
+// has to find its share of the work by itself; one call must be able to do all of it.
 template <class Work>
 void in_parallel(unsigned threads, Work&& work) {
 #if defined(PUP_HAS_THREADS)
     std::vector<std::thread> others;
     for (unsigned i = 1; i < threads; ++i) {
-        others.emplace_back(work);
+        others.emplace_back([&work, i] { work(i); });
     }
-    work();
+    work(0u);
     for (std::thread& t : others) {
         t.join();
     }
 #else
     static_cast<void>(threads);
-    work();
+    work(0u);
 #endif
 }
 

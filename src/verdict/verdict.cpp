@@ -6,7 +6,7 @@ namespace puppetri::verdict {
 std::string name_of(const Verdict& verdict) {
     switch (verdict.answer) {
         case Answer::kProved:
-            return verdict.force == Force::kEveryChoice       ? "PROVED for every choice"
+            return verdict.force == Force::kEveryChoice      ? "PROVED for every choice"
                    : verdict.force == Force::kProbabilityOne ? "PROVED with probability 1"
                                                              : "PROVED";
         case Answer::kRefuted:
