@@ -158,47 +158,60 @@ Order narrow_front(const Hypergraph& graph, std::uint32_t start) {
     }
 }
 
-// Places of which at most one is marked, with one token, share a variable: the places of a semiflow
-// of factors one and value one. Large ones first; what is left of a semiflow whose other places
-// are taken still excludes each other.
-PlaceGroups exclusive_groups(const PlainNet& net) {
+using Places = std::vector<std::uint32_t>;
+
+// Sets of places of which one is marked, with one token: semiflows of factors one and value one.
+std::vector<Places> exclusive_places(const PlainNet& net) {
     Budget budget;
     budget.seconds = 0.5;
     budget.states = 4000;
     budget.bytes = std::uint64_t{64} << 20;
-    const Flows flows = place_semiflows(net, budget);
-    std::vector<std::vector<std::uint32_t>> units;
-    for (const Flow& flow : flows.flows) {
+    std::vector<Places> units;
+    for (const Flow& flow : place_semiflows(net, budget).flows) {
         std::uint64_t value = 0;
         bool plain = true;
-        std::vector<std::uint32_t> places;
+        Places places;
         for (const Flow::Term& term : flow.terms) {
             plain = plain && term.factor == 1;
             value += net.initial[term.index];
             places.push_back(term.index);
         }
-        if (plain && value == 1) {
+        if (plain && value == 1 && places.size() > 1) {
             units.push_back(std::move(places));
         }
     }
+    return units;
+}
+
+// Places that exclude each other share a variable. Sets overlap: a ball is with one of the players,
+// a player has one of the balls or none. Those of one size are taken, the large or the small ones
+// first; what is left of a set whose other places are taken still excludes each other.
+PlaceGroups exclusive_groups(const PlainNet& net, std::vector<Places> units, bool large_first) {
+    std::stable_sort(units.begin(), units.end(), [&](const Places& a, const Places& b) {
+        return large_first ? a.size() > b.size() : a.size() < b.size();
+    });
     PlaceGroups groups;
     std::vector<std::uint8_t> taken(net.place_count(), 0);
-    while (true) {
-        std::size_t best = 0, most = 1;
-        for (std::size_t u = 0; u < units.size(); ++u) {
-            std::erase_if(units[u], [&](std::uint32_t p) { return taken[p] != 0; });
-            if (units[u].size() > most) {
-                most = units[u].size();
-                best = u;
-            }
-        }
-        if (most == 1) {
-            break;
-        }
-        for (const std::uint32_t p : units[best]) {
+    std::vector<Places> rests;
+    const auto take = [&](Places& unit) {
+        for (const std::uint32_t p : unit) {
             taken[p] = 1;
         }
-        groups.push_back(units[best]);
+        groups.push_back(std::move(unit));
+    };
+    const auto is_taken = [&](std::uint32_t p) { return taken[p] != 0; };
+    for (Places& unit : units) {
+        if (std::none_of(unit.begin(), unit.end(), is_taken)) {
+            take(unit);
+        } else {
+            rests.push_back(std::move(unit));
+        }
+    }
+    for (Places& rest : rests) {
+        std::erase_if(rest, is_taken);
+        if (rest.size() > 1) {
+            take(rest);
+        }
     }
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
         if (!taken[p]) {
@@ -210,8 +223,13 @@ PlaceGroups exclusive_groups(const PlainNet& net) {
     return groups;
 }
 
+struct Ranked {
+    PlaceGroups groups;
+    std::uint64_t span = 0;
+};
+
 // Orders of these groups, those with the shortest walks first, each followed by its reverse.
-std::vector<PlaceGroups> orders_of(const PlainNet& net, const PlaceGroups& groups) {
+std::vector<Ranked> orders_of(const PlainNet& net, const PlaceGroups& groups) {
     const Hypergraph graph = hypergraph_of(net, groups);
     std::vector<Order> orders(1, Order(graph.vertices));
     std::iota(orders[0].begin(), orders[0].end(), 0u);
@@ -228,15 +246,20 @@ std::vector<PlaceGroups> orders_of(const PlainNet& net, const PlaceGroups& group
         ranking.emplace_back(span_of(graph, orders[i]), i);
     }
     std::sort(ranking.begin(), ranking.end());
-    std::vector<PlaceGroups> result;
+    // The declared order second: nets that count step by step are often told in their best order.
+    const auto declared = std::find_if(ranking.begin(), ranking.end(),
+                                       [](const auto& rank) { return rank.second == 0; });
+    std::rotate(std::min(ranking.begin() + 1, declared), declared, declared + 1);
+    std::vector<Ranked> result;
     for (const auto& [span, i] : ranking) {
         for (int direction = 0; direction < 2; ++direction) {
-            PlaceGroups ordered;
+            Ranked ranked{.groups = {}, .span = span};
             for (const std::uint32_t v : orders[i]) {
-                ordered.push_back(groups[v]);
+                ranked.groups.push_back(groups[v]);
             }
-            if (std::find(result.begin(), result.end(), ordered) == result.end()) {
-                result.push_back(std::move(ordered));
+            if (std::none_of(result.begin(), result.end(),
+                             [&](const Ranked& r) { return r.groups == ranked.groups; })) {
+                result.push_back(std::move(ranked));
             }
             std::reverse(orders[i].begin(), orders[i].end());
         }
@@ -251,14 +274,30 @@ std::vector<PlaceGroups> place_orders(const PlainNet& net) {
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
         single[p] = {p};
     }
-    const PlaceGroups grouped = exclusive_groups(net);
-    std::vector<PlaceGroups> result = orders_of(net, grouped);
-    if (grouped != single) {
-        // One pair of orders of single places for two of groups.
-        const std::vector<PlaceGroups> alone = orders_of(net, single);
-        for (std::size_t i = 0, at = 2; i < alone.size(); ++i, at += i % 2 == 0 ? 3 : 1) {
-            at = std::min(at, result.size());
-            result.insert(result.begin() + static_cast<std::ptrdiff_t>(at), alone[i]);
+    const std::vector<Places> units = exclusive_places(net);
+    std::vector<std::vector<Ranked>> kinds;
+    std::vector<PlaceGroups> seen;
+    for (const PlaceGroups& groups :
+         {exclusive_groups(net, units, true), exclusive_groups(net, units, false), single}) {
+        if (std::find(seen.begin(), seen.end(), groups) == seen.end()) {
+            seen.push_back(groups);
+            kinds.push_back(orders_of(net, groups));
+        }
+    }
+    // Another kind goes first only where its walks are much shorter.
+    for (std::size_t k = 1; k < kinds.size(); ++k) {
+        if (kinds[k][0].span * 2 < kinds[0][0].span) {
+            std::swap(kinds[0], kinds[k]);
+        }
+    }
+    // A pair of directions of each kind in turn.
+    std::vector<PlaceGroups> result;
+    for (std::size_t pair = 0, left = 1; left > 0; pair += 2) {
+        left = 0;
+        for (std::vector<Ranked>& kind : kinds) {
+            for (std::size_t i = pair; i < std::min(pair + 2, kind.size()); ++i, ++left) {
+                result.push_back(std::move(kind[i].groups));
+            }
         }
     }
     return result;

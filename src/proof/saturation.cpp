@@ -11,7 +11,8 @@ Saturation::Saturation(DiagramStore& store, SymbolicLevels& levels)
       by_top_(levels.count() + 1),
       rows_(levels.count() + 1),
       have_row_(levels.count() + 1),
-      queues_(levels.count() + 1) {
+      queues_(levels.count() + 1),
+      moves_{ByLevel(levels.count() + 1), ByLevel(levels.count() + 1)} {
     for (std::uint32_t e = 0; e < event_count_; ++e) {
         by_top_[levels.events()[e].top()].push_back(e);
     }
@@ -96,38 +97,34 @@ NodeId Saturation::fire(std::uint32_t event, std::uint32_t position, NodeId node
     }
     const std::uint32_t level = store_.level(node);
     const std::uint32_t base = store_.frame();
-    bool any = false;
-    if (touches[position].level != level) {
-        store_.extend_full(base, levels_.value_count(level));
-        for (const DiagramEntry& e : store_.entries(node)) {
-            const NodeId below = fire(event, position, e.child);
-            store_.at(base + e.value).child = below;
-            any |= below != DiagramStore::kEmpty;
+    const bool touched = touches[position].level == level;
+    const std::uint32_t function = touches[position].function;
+    for (const DiagramEntry& e : store_.entries(node)) {
+        if (touched && levels_.next(function, e.value) == SymbolicLevels::kDisabled) {
+            continue;
         }
-    } else {
-        const std::uint32_t function = touches[position].function;
-        store_.extend_full(base, levels_.value_count(level));
-        for (const DiagramEntry& e : store_.entries(node)) {
-            if (levels_.next(function, e.value) == SymbolicLevels::kDisabled) {
-                continue;
-            }
-            const NodeId below = fire(event, position + 1, e.child);
-            if (below == DiagramStore::kEmpty) {
-                continue;
-            }
-            const std::int32_t found = levels_.reach(function, e.value);
-            if (found < 0) {
-                store_.fail(Ended::kUnbounded);
-                break;
-            }
-            const auto to = static_cast<std::uint32_t>(found);
-            store_.extend_full(base, to + 1);
-            store_.at(base + to).child = below;  // injective: the slot was empty
-            any = true;
+        const NodeId below = fire(event, position + (touched ? 1 : 0), e.child);
+        if (below == DiagramStore::kEmpty) {
+            continue;
         }
+        const std::int32_t to =
+            touched ? levels_.reach(function, e.value) : static_cast<std::int32_t>(e.value);
+        if (to < 0) {
+            store_.fail(Ended::kUnbounded);
+            break;
+        }
+        store_.push(static_cast<std::uint32_t>(to), below);  // injective: nobody else goes there
     }
-    if (any && !store_.failed()) {
-        saturate_frame(level, base);
+    if (store_.frame() != base && !store_.failed()) {
+        store_.sort_frame(base);
+        bool acts = false;
+        for (std::uint32_t i = base; i < store_.frame() && !acts; ++i) {
+            acts = !row(level, store_.at(i).value).empty();
+        }
+        if (acts) {
+            store_.spread(base, levels_.value_count(level));
+            saturate_frame(level, base);
+        }
         result = store_.make(level, base);
     } else {
         store_.pop_to(base);
@@ -164,23 +161,44 @@ NodeId Saturation::step_all(NodeId node, NodeId within, bool backward) {
     }
     const std::uint32_t level = store_.level(node);
     const std::uint32_t base = store_.frame();
-    store_.extend_full(base, levels_.value_count(level));
     const DiagramStore::View allowed = store_.entries(within);
-    for (const DiagramEntry& e : store_.entries(node)) {
-        add_to(base + e.value, step_all(e.child, allowed.child_of(e.value), backward));
-        for (const std::uint32_t event : by_top_[level]) {
-            const std::int32_t to =
-                target(levels_.events()[event].touches[0].function, e.value, backward);
-            if (to >= 0) {
-                const NodeId room = allowed.child_of(static_cast<std::uint32_t>(to));
-                add_to(base + static_cast<std::uint32_t>(to),
-                       step_from(event, 1, e.child, room, backward));
+    if (by_top_[level].empty()) {
+        for (const DiagramEntry& e : store_.entries(node)) {
+            const NodeId below = step_all(e.child, allowed.child_of(e.value), backward);
+            store_.push(e.value, below);
+        }
+    } else {
+        store_.extend_full(base, levels_.value_count(level));
+        for (const DiagramEntry& e : store_.entries(node)) {
+            add_to(base + e.value, step_all(e.child, allowed.child_of(e.value), backward));
+            for (const Move move : moves(level, e.value, backward)) {
+                add_to(base + move.to,
+                       step_from(move.event, 1, e.child, allowed.child_of(move.to), backward));
             }
         }
     }
     result = store_.make(level, base);
     store_.remember(op_all(kStepAll, backward), node, within, result);
     return result;
+}
+
+const std::vector<Saturation::Move>& Saturation::moves(std::uint32_t level, std::uint32_t value,
+                                                       bool backward) {
+    std::vector<std::vector<Move>>& rows = moves_[backward ? 1 : 0][level];
+    if (rows.empty()) {
+        rows.resize(levels_.value_count(level));
+        for (const std::uint32_t event : by_top_[level]) {
+            const std::uint32_t function = levels_.events()[event].touches[0].function;
+            for (std::uint32_t v = 0; v < rows.size(); ++v) {
+                const std::int32_t to =
+                    backward ? levels_.before(function, v) : levels_.after(function, v);
+                if (to >= 0) {
+                    rows[v].push_back({event, static_cast<std::uint32_t>(to)});
+                }
+            }
+        }
+    }
+    return rows[value];
 }
 
 // Unites a slot of the frame with a node.
@@ -215,25 +233,17 @@ NodeId Saturation::step_from(std::uint32_t event, std::uint32_t position, NodeId
     const std::uint32_t base = store_.frame();
     const DiagramStore::View allowed = store_.entries(within);
     const bool touched = touches[position].level == level;
-    if (touched) {
-        store_.extend_full(base, levels_.value_count(level));
-    }
     for (const DiagramEntry& e : store_.entries(node)) {
-        if (touched) {
-            const std::int32_t to = target(touches[position].function, e.value, backward);
-            if (to < 0) {
-                continue;
-            }
+        const std::int32_t to = touched ? target(touches[position].function, e.value, backward)
+                                        : static_cast<std::int32_t>(e.value);
+        if (to >= 0) {
             const NodeId below =
-                step_from(event, position + 1, e.child,
+                step_from(event, position + (touched ? 1 : 0), e.child,
                           allowed.child_of(static_cast<std::uint32_t>(to)), backward);
-            store_.at(base + static_cast<std::uint32_t>(to)).child = below;
-        } else {
-            const NodeId below =
-                step_from(event, position, e.child, allowed.child_of(e.value), backward);
-            store_.push(e.value, below);
+            store_.push(static_cast<std::uint32_t>(to), below);
         }
     }
+    store_.sort_frame(base);
     result = store_.make(level, base);
     store_.remember(op(kStep + backward, event), node, within, result);
     return result;
@@ -262,6 +272,47 @@ NodeId Saturation::enabled_from(std::uint32_t event, std::uint32_t position, Nod
     return result;
 }
 
+NodeId Saturation::enabled_any(std::span<const std::uint32_t> events, NodeId within) {
+    ByTop by_top(levels_.count() + 1);
+    for (const std::uint32_t e : events) {
+        by_top[levels_.events()[e].top()].push_back(e);
+    }
+    if (!by_top[0].empty()) {
+        return within;  // nothing keeps an event that touches nothing
+    }
+    return any_from(by_top, store_.new_op(), within);
+}
+
+// Shares the work of all events below a node, and stops where they cover it.
+NodeId Saturation::any_from(const ByTop& by_top, std::uint32_t op, NodeId node) {
+    if (node <= DiagramStore::kTop) {
+        return DiagramStore::kEmpty;
+    }
+    NodeId result = DiagramStore::kEmpty;
+    if (store_.cached(op, node, 0, result)) {
+        return result;
+    }
+    const std::uint32_t level = store_.level(node);
+    const std::uint32_t base = store_.frame();
+    for (const DiagramEntry& e : store_.entries(node)) {
+        const NodeId below = any_from(by_top, op, e.child);
+        store_.push(e.value, below);
+        const std::uint32_t slot = store_.frame() - 1;
+        for (const std::uint32_t event : by_top[level]) {
+            if (store_.at(slot).child == e.child) {
+                break;
+            }
+            if (levels_.enabled(levels_.events()[event].touches[0].function, e.value)) {
+                const NodeId more = enabled_from(event, 1, e.child);
+                add_to(slot, more);
+            }
+        }
+    }
+    result = store_.make(level, base);
+    store_.remember(op, node, 0, result);
+    return result;
+}
+
 NodeId Saturation::closure(NodeId from, NodeId within, bool backward) {
     return close_node(from, within, backward);
 }
@@ -278,11 +329,10 @@ NodeId Saturation::close_node(NodeId node, NodeId within, bool backward) {
     }
     const std::uint32_t level = store_.level(node);
     const std::uint32_t base = store_.frame();
-    store_.extend_full(base, levels_.value_count(level));
     const DiagramStore::View allowed = store_.entries(within);
     for (const DiagramEntry& e : store_.entries(node)) {
         const NodeId below = close_node(e.child, allowed.child_of(e.value), backward);
-        store_.at(base + e.value).child = below;
+        store_.push(e.value, below);
     }
     close_frame(level, base, within, backward);
     result = store_.make(level, base);
@@ -290,28 +340,32 @@ NodeId Saturation::close_node(NodeId node, NodeId within, bool backward) {
     return result;
 }
 
+// The frame holds some values in their order; spread out here if any event acts on them.
 void Saturation::close_frame(std::uint32_t level, std::uint32_t base, NodeId within,
                              bool backward) {
     Queue& queue = queues_[level];
-    for (std::uint32_t v = 0; base + v < store_.frame(); ++v) {
-        if (store_.at(base + v).child != DiagramStore::kEmpty) {
-            queue.add(v);
+    if (by_top_[level].empty()) {
+        return;
+    }
+    for (std::uint32_t i = base; i < store_.frame(); ++i) {
+        const DiagramEntry entry = store_.at(i);
+        if (entry.child != DiagramStore::kEmpty && !moves(level, entry.value, backward).empty()) {
+            queue.add(entry.value);
         }
     }
+    if (queue.empty()) {
+        return;
+    }
+    store_.spread(base, levels_.value_count(level));
     const DiagramStore::View allowed = store_.entries(within);
     while (!queue.empty() && !store_.failed()) {
         const std::uint32_t value = queue.take();
-        for (const std::uint32_t event : by_top_[level]) {
-            const std::int32_t to =
-                target(levels_.events()[event].touches[0].function, value, backward);
-            if (to < 0) {
-                continue;
-            }
-            const NodeId room = allowed.child_of(static_cast<std::uint32_t>(to));
+        for (const Move move : moves(level, value, backward)) {
+            const NodeId room = allowed.child_of(move.to);
             const NodeId reached =
-                fire_within(event, 1, store_.at(base + value).child, room, backward);
-            if (!store_.failed() && add_to(base + static_cast<std::uint32_t>(to), reached)) {
-                queue.add(static_cast<std::uint32_t>(to));
+                fire_within(move.event, 1, store_.at(base + value).child, room, backward);
+            if (!store_.failed() && add_to(base + move.to, reached)) {
+                queue.add(move.to);
             }
         }
     }
@@ -339,10 +393,8 @@ NodeId Saturation::fire_within(std::uint32_t event, std::uint32_t position, Node
     }
     const std::uint32_t level = store_.level(node);
     const std::uint32_t base = store_.frame();
-    store_.extend_full(base, levels_.value_count(level));
     const DiagramStore::View allowed = store_.entries(within);
     const bool touched = touches[position].level == level;
-    bool any = false;
     for (const DiagramEntry& e : store_.entries(node)) {
         const std::int32_t to = touched ? target(touches[position].function, e.value, backward)
                                         : static_cast<std::int32_t>(e.value);
@@ -352,15 +404,13 @@ NodeId Saturation::fire_within(std::uint32_t event, std::uint32_t position, Node
         const NodeId below =
             fire_within(event, position + (touched ? 1 : 0), e.child,
                         allowed.child_of(static_cast<std::uint32_t>(to)), backward);
-        store_.at(base + static_cast<std::uint32_t>(to)).child = below;
-        any |= below != DiagramStore::kEmpty;
+        if (below != DiagramStore::kEmpty) {
+            store_.push(static_cast<std::uint32_t>(to), below);
+        }
     }
-    if (any) {
-        close_frame(level, base, within, backward);
-        result = store_.make(level, base);
-    } else {
-        store_.pop_to(base);
-    }
+    store_.sort_frame(base);
+    close_frame(level, base, within, backward);
+    result = store_.make(level, base);
     store_.remember(op(kFireWithin + backward, event), node, within, result);
     return result;
 }

@@ -9,6 +9,7 @@
 //         values, asked as values are found.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "symbolic_levels.h"
@@ -34,6 +35,8 @@ class Saturation {
     NodeId step_by(std::uint32_t event, NodeId from, NodeId within, bool backward);
     // Markings of `within` that enable the transition.
     NodeId enabled(std::uint32_t event, NodeId within) { return enabled_from(event, 0, within); }
+    // Markings of `within` that enable one of them at least.
+    NodeId enabled_any(std::span<const std::uint32_t> events, NodeId within);
 
  private:
     struct Candidate {
@@ -102,6 +105,13 @@ class Saturation {
     std::uint32_t op_all(std::uint32_t whole, bool backward) const {
         return first_op_ + kKinds * event_count_ + whole + backward;
     }
+    using ByTop = std::vector<std::vector<std::uint32_t>>;
+    NodeId any_from(const ByTop& by_top, std::uint32_t op, NodeId node);
+    struct Move {
+        std::uint32_t event = 0, to = 0;
+    };
+    // Of events whose top is this level: where they lead from this value. After levels.close().
+    const std::vector<Move>& moves(std::uint32_t level, std::uint32_t value, bool backward);
     NodeId step_all(NodeId node, NodeId within, bool backward);
     bool add_to(std::uint32_t position, NodeId more);
     NodeId enabled_from(std::uint32_t event, std::uint32_t position, NodeId node);
@@ -112,7 +122,9 @@ class Saturation {
     std::vector<std::vector<std::uint32_t>> by_top_;         // per level: events
     std::vector<std::vector<std::vector<Candidate>>> rows_;  // per level and value
     std::vector<std::vector<std::uint8_t>> have_row_;
+    using ByLevel = std::vector<std::vector<std::vector<Move>>>;
     std::vector<Queue> queues_;  // per level: only one frame of a level works at a time
+    ByLevel moves_[2];           // forward, backward; per level and value
 };
 
 }  // namespace puppetri::proof

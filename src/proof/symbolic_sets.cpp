@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sets of markings: algebra, predicates.
 #include <algorithm>
+#include <numeric>
 #include <unordered_map>
 
 #include "puppetri/base/require.h"
@@ -164,11 +165,10 @@ StateSet SymbolicSpace::satisfying(const Predicate& predicate, std::uint32_t ind
             return without(within, at_most(predicate.sums[node.index], node.limit - 1, within));
         case Op::kEnabled:
         case Op::kNoneEnabled: {
-            StateSet rest = within;
-            for (std::uint32_t i = 0; i < node.count; ++i) {
-                rest = without(rest, enabled(listed(i), rest));
-            }
-            return node.op == Op::kNoneEnabled ? rest : without(within, rest);
+            const std::span<const std::uint32_t> events(predicate.list.data() + node.first,
+                                                        node.count);
+            const StateSet on = enabled_any(events, within);
+            return node.op == Op::kEnabled ? on : without(within, on);
         }
         case Op::kAnd: {
             StateSet result = within;
@@ -188,22 +188,26 @@ StateSet SymbolicSpace::satisfying(const Predicate& predicate, std::uint32_t ind
     return {};
 }
 
+StateSet SymbolicSpace::enabled_any(std::span<const std::uint32_t> transitions,
+                                    const StateSet& within) {
+    return ready(within) ? wrap(tables_->saturation->enabled_any(transitions, within.root_))
+                         : StateSet();
+}
+
 StateSet SymbolicSpace::dead() {
-    StateSet rest = all();
-    for (std::uint32_t t = 0; t < net().transition_count(); ++t) {
-        rest = without(rest, enabled(t, rest));
-    }
-    return rest;
+    std::vector<std::uint32_t> transitions(net().transition_count());
+    std::iota(transitions.begin(), transitions.end(), 0u);
+    return without(all(), enabled_any(transitions, all()));
 }
 
 StateSet SymbolicSpace::stuck() {
-    StateSet rest = all();
+    std::vector<std::uint32_t> transitions;
     for (std::uint32_t t = 0; t < net().transition_count(); ++t) {
         if (net().optional.empty() || net().optional[t] == 0) {
-            rest = without(rest, enabled(t, rest));
+            transitions.push_back(t);
         }
     }
-    return rest;
+    return without(all(), enabled_any(transitions, all()));
 }
 
 }  // namespace puppetri::proof

@@ -37,8 +37,8 @@ StateSet::~StateSet() {
 // Levels nest as deep as the recursion of every operation.
 constexpr std::uint32_t kMostLevels = 8192;
 // Work of the first attempt at each order, in nodes looked for; each round gives four times more.
-constexpr std::uint64_t kFirstWork = 1u << 20;
-constexpr std::size_t kOrdersAtOnce = 6;
+constexpr std::uint64_t kFirstWork = 1u << 14;
+constexpr std::size_t kOrdersAtOnce = 12;
 
 // Orders are tried in turn with growing shares of work, so that one bad order costs little.
 void SymbolicTables::explore() {

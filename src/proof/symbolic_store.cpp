@@ -85,6 +85,36 @@ void DiagramStore::extend_full(std::uint32_t base, std::uint32_t count) {
     }
 }
 
+void DiagramStore::sort_frame(std::uint32_t base) {
+    const auto less = [](const DiagramEntry& a, const DiagramEntry& b) {
+        return a.value < b.value;
+    };
+    const auto first = stack_.begin() + static_cast<std::ptrdiff_t>(base);
+    if (!std::is_sorted(first, stack_.end(), less)) {
+        std::sort(first, stack_.end(), less);
+    }
+}
+
+void DiagramStore::spread(std::uint32_t base, std::uint32_t count) {
+    std::uint32_t from = frame();
+    extend_full(base, count);
+    // From the back: no entry is further than its slot.
+    for (std::uint32_t to = base + count; from > base;) {
+        const DiagramEntry entry = stack_[--from];
+        while (to > base + entry.value + 1) {
+            --to;
+            stack_[to] = {to - base, kEmpty};
+        }
+        stack_[--to] = entry;
+        if (from == base) {
+            while (to > base) {
+                --to;
+                stack_[to] = {to - base, kEmpty};
+            }
+        }
+    }
+}
+
 // Blocks above kExactClasses come in four sizes per power of two.
 std::uint32_t DiagramStore::class_of(std::uint32_t count) {
     if (count <= kExactClasses) {

@@ -56,6 +56,11 @@ class DiagramStore {
     // A frame with one slot per value below `count`, all empty.
     void extend_full(std::uint32_t base, std::uint32_t count);
 
+    // The frame in order of values.
+    void sort_frame(std::uint32_t base);
+    // The frame, in order of values, with a slot for every value below `count`.
+    void spread(std::uint32_t base, std::uint32_t count);
+
     // The node with the nonempty children of the frame above base, in order of values; pops it.
     NodeId make(std::uint32_t level, std::uint32_t base);
 

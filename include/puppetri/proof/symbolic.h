@@ -176,6 +176,7 @@ class SymbolicSpace {
     bool ready(const StateSet& a) const;
     StateSet at_most(const LinearSum& sum, std::int64_t limit, const StateSet& within);
     StateSet satisfying(const Predicate& predicate, std::uint32_t index, const StateSet& within);
+    StateSet enabled_any(std::span<const std::uint32_t> transitions, const StateSet& within);
     StateSet before(const StateSet& a, const StateSet& within);
     StateSet after(const StateSet& a, const StateSet& within);
     static constexpr std::uint32_t kAnyTransition = ~std::uint32_t{0};
