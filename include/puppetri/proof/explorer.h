@@ -6,9 +6,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "puppetri/proof/budget.h"
@@ -54,8 +52,6 @@ struct Exploration {
     Marking bounds;  // most tokens seen, per place
     Finding dead;
     std::vector<Finding> goals;
-    // Where ended is not kDone because a place grew for ever as far as could be seen: the place.
-    std::optional<std::uint32_t> growing;
     unsigned bits_per_state = 0;  // of the packed marking
     std::uint64_t bytes = 0;      // most that states and tables held at one time
     double seconds = 0;
