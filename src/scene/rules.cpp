@@ -106,6 +106,9 @@ void Elaboration::complete_rule(const Element<lang::Rule>& rule) {
         }
     }
     out.when_settled = node.when_settled;
+    if (node.kind == lang::RuleKind::kBounded && !node.bound) {
+        out.count = net::Rule::kNoCount;
+    }
     switch (node.kind) {
         case lang::RuleKind::kBounded:
         case lang::RuleKind::kLive:

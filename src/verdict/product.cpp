@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: MIT
+#include "puppetri/verdict/product.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <boost/unordered/unordered_flat_map.hpp>
+
+namespace puppetri::verdict {
+
+AtomRow Product::row_of(const proof::Graph& graph, std::uint32_t state) {
+    const std::uint64_t words = (graph.atoms.atoms + 63) / 64;
+    return {graph.atoms.may.data() + state * words, graph.atoms.must.data() + state * words};
+}
+
+Product make_product(const proof::Graph& graph, const Monitor* monitor,
+                     std::uint64_t most_edges) {
+    Product p;
+    p.graph = &graph;
+    p.complete = graph.ended == proof::Ended::kDone;
+    boost::unordered_flat_map<std::uint64_t, std::uint32_t> known;
+    // Stateless monitors: the node of a state is its number, broken ones lie behind.
+    const auto node_of = [&](std::uint32_t state, std::uint32_t m) {
+        const auto [found, is_new] =
+            known.try_emplace((std::uint64_t{m} << 32) | state, p.size());
+        if (is_new) {
+            p.state.push_back(state);
+            p.monitor.push_back(m);
+        }
+        return found->second;
+    };
+    std::vector<std::uint32_t> next;
+    const auto settled = [&](std::uint32_t s) {
+        return (graph.flags[s] & proof::Graph::kSettled) != 0;
+    };
+    if (graph.size() == 0) {
+        p.complete = false;
+        p.starts.push_back(0);
+        return p;
+    }
+    const std::uint32_t initial = graph.initial;
+    if (monitor != nullptr) {
+        const AtomRow row = Product::row_of(graph, initial);
+        monitor->step(monitor->start(),
+                      {.before = row, .now = row, .settled = settled(initial), .start = true},
+                      next);
+        for (const std::uint32_t m : next) {
+            p.first.push_back(node_of(initial, m));
+        }
+    } else {
+        p.first.push_back(node_of(initial, 0));
+    }
+    for (std::uint32_t n = 0; n < p.size(); ++n) {
+        p.starts.push_back(p.targets.size());
+        if (p.broken(n)) {
+            continue;
+        }
+        const std::uint32_t s = p.state[n], m = p.monitor[n];
+        if (p.targets.size() > most_edges) {
+            p.complete = false;
+            continue;
+        }
+        if ((graph.flags[s] & proof::Graph::kCut) != 0) {
+            p.complete = false;
+        }
+        const AtomRow before = Product::row_of(graph, s);
+        for (std::uint32_t e = graph.edges.starts[s]; e < graph.edges.starts[s + 1]; ++e) {
+            const proof::Edge& edge = graph.edges.items[e];
+            if (monitor == nullptr) {
+                p.targets.push_back(node_of(edge.target, 0));
+                p.edge.push_back(e);
+                continue;
+            }
+            monitor->step(m,
+                          {.before = before,
+                           .now = Product::row_of(graph, edge.target),
+                           .label = edge.label,
+                           .settled = settled(edge.target)},
+                          next);
+            for (const std::uint32_t to : next) {
+                p.targets.push_back(node_of(edge.target, to));
+                p.edge.push_back(e);
+            }
+        }
+    }
+    p.starts.push_back(p.targets.size());
+    return p;
+}
+
+namespace {
+
+// Every condition "some token of this place does not wait for ever" is met somewhere in the
+// component: a generalized Buechi condition, so that looking at whole components is enough.
+bool is_just(const Product& p, const std::vector<std::uint32_t>& component,
+             const std::vector<std::uint32_t>& of_node, std::uint32_t number, const Nodes& open,
+             const std::vector<std::uint8_t>& left_out, const std::vector<Waiting>& waiting) {
+    for (const Waiting& w : waiting) {
+        if (!w.at_most) {
+            continue;  // it may wait for ever
+        }
+        bool met = false;
+        for (const std::uint32_t n : component) {
+            if (!p.row(n)[w.unready].must) {
+                met = true;
+                break;
+            }
+        }
+        for (std::size_t i = 0; !met && i < component.size(); ++i) {
+            const std::uint32_t n = component[i];
+            for (std::uint64_t e = p.starts[n]; e < p.starts[n + 1] && !met; ++e) {
+                const std::uint32_t to = p.targets[e];
+                if (open[to] == 0 || of_node[to] != number ||
+                    (!left_out.empty() && left_out[e] != 0)) {
+                    continue;
+                }
+                met = std::binary_search(w.givers.begin(), w.givers.end(), p.label(e));
+            }
+        }
+        if (!met) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+// Source  R. Tarjan, Depth-first search and linear graph algorithms, SIAM J. Computing 1, 1972;
+//         without recursion.
+std::optional<std::vector<std::uint32_t>> endless(const Product& p, const Nodes& open,
+                                                  const std::vector<std::uint8_t>& left_out,
+                                                  const std::vector<Waiting>& waiting) {
+    constexpr std::uint32_t kNew = ~std::uint32_t{0};
+    std::vector<std::uint32_t> index(p.size(), kNew), low(p.size(), 0),
+        component_of(p.size(), kNew), stack;
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> path;  // node, next edge
+    std::uint32_t count = 0, components = 0;
+    const auto inside = [&](std::uint64_t e) {
+        return open[p.targets[e]] != 0 && (left_out.empty() || left_out[e] == 0);
+    };
+    for (std::uint32_t root = 0; root < p.size(); ++root) {
+        if (open[root] == 0 || index[root] != kNew) {
+            continue;
+        }
+        path.push_back({root, p.starts[root]});
+        index[root] = low[root] = count++;
+        stack.push_back(root);
+        while (!path.empty()) {
+            auto& [n, e] = path.back();
+            if (e < p.starts[n + 1]) {
+                const std::uint64_t edge = e++;
+                const std::uint32_t to = p.targets[edge];
+                if (!inside(edge)) {
+                    continue;
+                }
+                if (index[to] == kNew) {
+                    index[to] = low[to] = count++;
+                    stack.push_back(to);
+                    path.push_back({to, p.starts[to]});
+                } else if (component_of[to] == kNew) {
+                    low[n] = std::min(low[n], index[to]);
+                }
+                continue;
+            }
+            const std::uint32_t done = n;
+            path.pop_back();
+            if (!path.empty()) {
+                low[path.back().first] = std::min(low[path.back().first], low[done]);
+            }
+            if (low[done] != index[done]) {
+                continue;
+            }
+            std::vector<std::uint32_t> component;
+            std::uint32_t member = kNew;
+            while (member != done) {
+                member = stack.back();
+                stack.pop_back();
+                component_of[member] = components;
+                component.push_back(member);
+            }
+            bool cycle = component.size() > 1;
+            for (std::uint64_t k = p.starts[done]; k < p.starts[done + 1] && !cycle; ++k) {
+                cycle = inside(k) && p.targets[k] == done;
+            }
+            if (cycle &&
+                is_just(p, component, component_of, components, open, left_out, waiting)) {
+                return component;
+            }
+            ++components;
+        }
+    }
+    return std::nullopt;
+}
+
+namespace {
+
+constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
+
+std::int64_t plus(std::int64_t a, std::int64_t b) { return a > kForEver - b ? kForEver : a + b; }
+
+class Stay {
+ public:
+    Stay(const Product& p, const Nodes& open, const std::vector<Waiting>& waiting)
+        : p_(p), open_(open), waiting_(waiting), known_(p.size(), kUnknown) {
+        timed_ = p.graph->high_ticks.size() == p.graph->edges.items.size() &&
+                 !p.graph->high_ticks.empty();
+    }
+
+    // For nodes in `open`.
+    std::int64_t longest(std::uint32_t n) {
+        if (known_[n] != kUnknown) {
+            return known_[n] == kBusy ? kForEver : known_[n];
+        }
+        // Deep paths would use up the stack: no bound is known then.
+        if (depth_ > 20'000 || work_ > 50'000'000) {
+            return kForEver;
+        }
+        known_[n] = kBusy;
+        ++depth_;
+        std::int64_t value = 0;
+        if (p_.rests(n) || p_.cut(n)) {
+            value = kForEver;
+        } else if (timed_ || !time_passes(n)) {
+            for (std::uint64_t e = p_.starts[n]; e < p_.starts[n + 1] && value != kForEver; ++e) {
+                const std::uint32_t to = p_.targets[e];
+                const std::int64_t ticks = timed_ ? p_.graph->high_ticks[p_.edge[e]] : 0;
+                value = std::max(value, open_[to] != 0 ? plus(longest(to), ticks) : ticks);
+            }
+        } else {
+            value = kForEver;
+            for (const Waiting& w : waiting_) {
+                if (w.at_most && *w.at_most < value && p_.row(n)[w.unready].must) {
+                    value = std::min(value, while_waiting(n, w));
+                }
+            }
+        }
+        --depth_;
+        known_[n] = value;
+        return value;
+    }
+
+ private:
+    static constexpr std::int64_t kUnknown = -1, kBusy = -2;
+
+    bool time_passes(std::uint32_t n) const {
+        if ((p_.graph->flags[p_.state[n]] & proof::Graph::kSettled) != 0) {
+            return true;
+        }
+        for (std::uint64_t e = p_.starts[n]; e < p_.starts[n + 1]; ++e) {
+            if (p_.label(e) == proof::Edge::kPass) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    // A token of w waits in n. Where the paths from n lead to, staying open, when it waits no
+    // longer; that is at most w.at_most later.
+    std::int64_t while_waiting(std::uint32_t n, const Waiting& w) {
+        std::vector<std::uint32_t> region = {n}, exits;
+        std::vector<std::uint8_t> seen(p_.size(), std::uint8_t{0});
+        work_ += p_.size() / 8;
+        seen[n] = 1;
+        for (std::size_t i = 0; i < region.size(); ++i) {
+            const std::uint32_t from = region[i];
+            for (std::uint64_t e = p_.starts[from]; e < p_.starts[from + 1]; ++e) {
+                ++work_;
+                const std::uint32_t to = p_.targets[e];
+                if (open_[to] == 0) {
+                    continue;
+                }
+                const bool same_token =
+                    p_.row(to)[w.unready].must &&
+                    !std::binary_search(w.givers.begin(), w.givers.end(), p_.label(e));
+                if (!same_token) {
+                    exits.push_back(to);
+                } else if (seen[to] == 0) {
+                    seen[to] = 1;
+                    region.push_back(to);
+                }
+            }
+        }
+        std::int64_t worst = 0;
+        for (const std::uint32_t exit : exits) {
+            worst = std::max(worst, longest(exit));
+            if (worst == kForEver) {
+                return kForEver;
+            }
+        }
+        return plus(worst, *w.at_most);
+    }
+
+    const Product& p_;
+    const Nodes& open_;
+    const std::vector<Waiting>& waiting_;
+    std::vector<std::int64_t> known_;
+    bool timed_ = false;
+    std::uint32_t depth_ = 0;
+    std::uint64_t work_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::int64_t> longest_stay(const Product& product, const Nodes& open,
+                                         const std::vector<std::uint32_t>& from,
+                                         const std::vector<Waiting>& waiting) {
+    Stay stay(product, open, waiting);
+    std::int64_t worst = 0;
+    for (const std::uint32_t n : from) {
+        worst = std::max(worst, stay.longest(n));
+    }
+    return worst == kForEver ? std::nullopt : std::optional(worst);
+}
+
+std::vector<std::uint32_t> distances_to_edges(const Product& p,
+                                              const std::vector<std::uint8_t>& edges,
+                                              const Nodes& targets) {
+    std::vector<std::uint64_t> starts(p.size() + 1, 0);
+    for (const std::uint32_t to : p.targets) {
+        ++starts[to + 1];
+    }
+    for (std::uint32_t n = 0; n < p.size(); ++n) {
+        starts[n + 1] += starts[n];
+    }
+    std::vector<std::uint32_t> sources(p.targets.size());
+    std::vector<std::uint64_t> at(starts.begin(), starts.end() - 1);
+    std::vector<std::uint32_t> distance(p.size(), kFar), queue;
+    for (std::uint32_t n = 0; n < p.size(); ++n) {
+        bool here = !targets.empty() && targets[n] != 0;
+        for (std::uint64_t e = p.starts[n]; e < p.starts[n + 1]; ++e) {
+            sources[at[p.targets[e]]++] = n;
+            here = here || (!edges.empty() && edges[e] != 0);
+        }
+        if (here) {
+            distance[n] = 0;
+            queue.push_back(n);
+        }
+    }
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+        const std::uint32_t n = queue[i];
+        for (std::uint64_t k = starts[n]; k < starts[n + 1]; ++k) {
+            if (distance[sources[k]] == kFar) {
+                distance[sources[k]] = distance[n] + 1;
+                queue.push_back(sources[k]);
+            }
+        }
+    }
+    return distance;
+}
+
+std::vector<std::uint32_t> distances(const Product& product, const Nodes& targets) {
+    return distances_to_edges(product, {}, targets);
+}
+
+}  // namespace puppetri::verdict
