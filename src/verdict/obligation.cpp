@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "puppetri/net/tables.h"
+
 namespace puppetri::verdict {
 namespace {
 
@@ -215,6 +217,36 @@ Formula over_full(const net::Net& net, const net::Rule& rule) {
     return any;
 }
 
+// As many tokens everywhere, and the same data, as at the start.
+Formula initial_marking(const net::Net& net) {
+    std::vector<std::int64_t> tokens(net.place_count(), 0);
+    for (const net::NetTables::Initial& i : net.tables().initial) {
+        tokens[i.place] += i.count;
+    }
+    Formula all = Formula::constant(true);
+    bool first = true;
+    const auto add = [&](Formula f) {
+        all = first ? std::move(f) : Formula::binary(FormulaOp::kAnd, std::move(all), std::move(f));
+        first = false;
+    };
+    for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+        if (tokens[p] > 0) {
+            add(Formula::marked(net::PlaceIndex{p}, tokens[p]));
+        }
+        add(Formula::unary(FormulaOp::kNot, Formula::marked(net::PlaceIndex{p}, tokens[p] + 1)));
+    }
+    const std::vector<net::DatumDraft>& data = net.declarations().data;
+    for (std::uint32_t d = 0; d < data.size(); ++d) {
+        auto same = Expr::binary(ExprOp::kEqual,
+                                 Expr::slot(net::slot(net::SlotKind::kDatum, d), data[d].type),
+                                 Expr::literal(data[d].type, data[d].initial));
+        if (same) {
+            add(Formula::expression(std::move(*same)));
+        }
+    }
+    return all;
+}
+
 }  // namespace
 
 std::uint32_t Atoms::add(const Formula& formula) {
@@ -299,6 +331,9 @@ Obligation make_obligation(const net::Net& net, const net::Rule& rule, const Hos
             if (rule.count != net::Rule::kNoCount) {
                 o.operands.push_back(make_operand(over_full(net, rule), host, atoms));
             }
+            break;
+        case net::RuleKind::kReversible:
+            o.operands.push_back(make_operand(initial_marking(net), nullptr, atoms));
             break;
         case net::RuleKind::kFormula: {
             const Formula& f = rule.operands.front();

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <limits>
-
-#include <boost/unordered/unordered_flat_map.hpp>
+#include <map>
 
 namespace puppetri::verdict {
 
@@ -13,21 +12,31 @@ AtomRow Product::row_of(const proof::Graph& graph, std::uint32_t state) {
     return {graph.atoms.may.data() + state * words, graph.atoms.must.data() + state * words};
 }
 
-Product make_product(const proof::Graph& graph, const Monitor* monitor,
-                     std::uint64_t most_edges) {
+Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uint64_t most_edges,
+                     const std::vector<proof::Stop>& stops) {
     Product p;
     p.graph = &graph;
+    if (!stops.empty()) {
+        p.stop.resize(graph.size(), 0);
+        for (const proof::Stop& stop : stops) {
+            p.stop[stop.state] = 1;
+        }
+    }
     p.complete = graph.ended == proof::Ended::kDone;
-    boost::unordered_flat_map<std::uint64_t, std::uint32_t> known;
-    // Stateless monitors: the node of a state is its number, broken ones lie behind.
+    // Monitors have few states: a row of nodes for each.
+    constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    std::map<std::uint32_t, std::vector<std::uint32_t>> known;
     const auto node_of = [&](std::uint32_t state, std::uint32_t m) {
-        const auto [found, is_new] =
-            known.try_emplace((std::uint64_t{m} << 32) | state, p.size());
-        if (is_new) {
+        std::vector<std::uint32_t>& row = known[m];
+        if (row.empty()) {
+            row.resize(graph.size(), kNone);
+        }
+        if (row[state] == kNone) {
+            row[state] = p.size();
             p.state.push_back(state);
             p.monitor.push_back(m);
         }
-        return found->second;
+        return row[state];
     };
     std::vector<std::uint32_t> next;
     const auto settled = [&](std::uint32_t s) {
@@ -60,7 +69,7 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor,
             p.complete = false;
             continue;
         }
-        if ((graph.flags[s] & proof::Graph::kCut) != 0) {
+        if (p.cut(n)) {
             p.complete = false;
         }
         const AtomRow before = Product::row_of(graph, s);
@@ -89,31 +98,22 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor,
 
 namespace {
 
-// Every condition "some token of this place does not wait for ever" is met somewhere in the
+// Every condition "what waits of this kind does not wait for ever" is met somewhere in the
 // component: a generalized Buechi condition, so that looking at whole components is enough.
 bool is_just(const Product& p, const std::vector<std::uint32_t>& component,
              const std::vector<std::uint32_t>& of_node, std::uint32_t number, const Nodes& open,
-             const std::vector<std::uint8_t>& left_out, const std::vector<Waiting>& waiting) {
-    for (const Waiting& w : waiting) {
-        if (!w.at_most) {
-            continue;  // it may wait for ever
-        }
+             const std::vector<std::uint8_t>& left_out, const proof::Waits& waits) {
+    for (std::uint32_t kind = 0; kind < waits.kinds; ++kind) {
         bool met = false;
-        for (const std::uint32_t n : component) {
-            if (!p.row(n)[w.unready].must) {
-                met = true;
-                break;
-            }
+        for (std::size_t i = 0; !met && i < component.size(); ++i) {
+            met = !waits.waits(p.state[component[i]], kind);
         }
         for (std::size_t i = 0; !met && i < component.size(); ++i) {
             const std::uint32_t n = component[i];
             for (std::uint64_t e = p.starts[n]; e < p.starts[n + 1] && !met; ++e) {
                 const std::uint32_t to = p.targets[e];
-                if (open[to] == 0 || of_node[to] != number ||
-                    (!left_out.empty() && left_out[e] != 0)) {
-                    continue;
-                }
-                met = std::binary_search(w.givers.begin(), w.givers.end(), p.label(e));
+                met = open[to] != 0 && of_node[to] == number &&
+                      (left_out.empty() || left_out[e] == 0) && waits.stirs(p.edge[e], kind);
             }
         }
         if (!met) {
@@ -123,13 +123,11 @@ bool is_just(const Product& p, const std::vector<std::uint32_t>& component,
     return true;
 }
 
-}  // namespace
-
 // Source  R. Tarjan, Depth-first search and linear graph algorithms, SIAM J. Computing 1, 1972;
 //         without recursion.
-std::optional<std::vector<std::uint32_t>> endless(const Product& p, const Nodes& open,
-                                                  const std::vector<std::uint8_t>& left_out,
-                                                  const std::vector<Waiting>& waiting) {
+std::optional<std::vector<std::uint32_t>> cycles(const Product& p, const Nodes& open,
+                                                 const std::vector<std::uint8_t>& left_out,
+                                                 const proof::Waits* waits) {
     constexpr std::uint32_t kNew = ~std::uint32_t{0};
     std::vector<std::uint32_t> index(p.size(), kNew), low(p.size(), 0),
         component_of(p.size(), kNew), stack;
@@ -182,14 +180,32 @@ std::optional<std::vector<std::uint32_t>> endless(const Product& p, const Nodes&
             for (std::uint64_t k = p.starts[done]; k < p.starts[done + 1] && !cycle; ++k) {
                 cycle = inside(k) && p.targets[k] == done;
             }
-            if (cycle &&
-                is_just(p, component, component_of, components, open, left_out, waiting)) {
+            if (cycle && (waits == nullptr || is_just(p, component, component_of, components, open,
+                                                      left_out, *waits))) {
                 return component;
             }
             ++components;
         }
     }
     return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::uint32_t>> endless(const Product& p, const Nodes& open,
+                                                  const std::vector<std::uint8_t>& left_out,
+                                                  const proof::Waits* waits) {
+    if (waits == nullptr || waits->kinds == 0) {
+        return cycles(p, open, left_out, nullptr);
+    }
+    // Where no time passes, nothing that waits helps.
+    std::vector<std::uint8_t> without = left_out;
+    without.resize(p.targets.size(), 0);
+    for (std::uint64_t e = 0; e < p.targets.size(); ++e) {
+        without[e] = without[e] != 0 || p.label(e) == proof::Edge::kPass ? 1 : 0;
+    }
+    auto zeno = cycles(p, open, without, nullptr);
+    return zeno ? zeno : cycles(p, open, left_out, waits);
 }
 
 namespace {
@@ -200,10 +216,10 @@ std::int64_t plus(std::int64_t a, std::int64_t b) { return a > kForEver - b ? kF
 
 class Stay {
  public:
-    Stay(const Product& p, const Nodes& open, const std::vector<Waiting>& waiting)
-        : p_(p), open_(open), waiting_(waiting), known_(p.size(), kUnknown) {
-        timed_ = p.graph->high_ticks.size() == p.graph->edges.items.size() &&
-                 !p.graph->high_ticks.empty();
+    Stay(const Product& p, const Nodes& open, bool by_ticks, const proof::Waits* waits,
+         const std::vector<std::int64_t>& at_most)
+        : p_(p), open_(open), waits_(waits), at_most_(at_most), known_(p.size(), kUnknown) {
+        timed_ = by_ticks && p.graph->high_ticks.size() == p.graph->edges.items.size();
     }
 
     // For nodes in `open`.
@@ -228,9 +244,10 @@ class Stay {
             }
         } else {
             value = kForEver;
-            for (const Waiting& w : waiting_) {
-                if (w.at_most && *w.at_most < value && p_.row(n)[w.unready].must) {
-                    value = std::min(value, while_waiting(n, w));
+            for (std::uint32_t kind = 0; waits_ != nullptr && kind < waits_->kinds; ++kind) {
+                if (kind < at_most_.size() && at_most_[kind] < value &&
+                    waits_->waits(p_.state[n], kind)) {
+                    value = std::min(value, while_waiting(n, kind));
                 }
             }
         }
@@ -254,9 +271,9 @@ class Stay {
         return false;
     }
 
-    // A token of w waits in n. Where the paths from n lead to, staying open, when it waits no
-    // longer; that is at most w.at_most later.
-    std::int64_t while_waiting(std::uint32_t n, const Waiting& w) {
+    // Something of the kind waits in n. Where the paths from n lead to, staying open, when that
+    // has ended or may have been stirred; it is at most at_most_[kind] later.
+    std::int64_t while_waiting(std::uint32_t n, std::uint32_t kind) {
         std::vector<std::uint32_t> region = {n}, exits;
         std::vector<std::uint8_t> seen(p_.size(), std::uint8_t{0});
         work_ += p_.size() / 8;
@@ -269,10 +286,7 @@ class Stay {
                 if (open_[to] == 0) {
                     continue;
                 }
-                const bool same_token =
-                    p_.row(to)[w.unready].must &&
-                    !std::binary_search(w.givers.begin(), w.givers.end(), p_.label(e));
-                if (!same_token) {
+                if (!waits_->waits(p_.state[to], kind) || waits_->stirs(p_.edge[e], kind)) {
                     exits.push_back(to);
                 } else if (seen[to] == 0) {
                     seen[to] = 1;
@@ -287,12 +301,13 @@ class Stay {
                 return kForEver;
             }
         }
-        return plus(worst, *w.at_most);
+        return plus(worst, at_most_[kind]);
     }
 
     const Product& p_;
     const Nodes& open_;
-    const std::vector<Waiting>& waiting_;
+    const proof::Waits* waits_;
+    const std::vector<std::int64_t>& at_most_;
     std::vector<std::int64_t> known_;
     bool timed_ = false;
     std::uint32_t depth_ = 0;
@@ -302,9 +317,10 @@ class Stay {
 }  // namespace
 
 std::optional<std::int64_t> longest_stay(const Product& product, const Nodes& open,
-                                         const std::vector<std::uint32_t>& from,
-                                         const std::vector<Waiting>& waiting) {
-    Stay stay(product, open, waiting);
+                                         const std::vector<std::uint32_t>& from, bool by_ticks,
+                                         const proof::Waits* waits,
+                                         const std::vector<std::int64_t>& at_most) {
+    Stay stay(product, open, by_ticks, waits, at_most);
     std::int64_t worst = 0;
     for (const std::uint32_t n : from) {
         worst = std::max(worst, stay.longest(n));

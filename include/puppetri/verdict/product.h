@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "puppetri/proof/graph.h"
+#include "puppetri/proof/timed_graph.h"
 #include "puppetri/verdict/monitor.h"
 
 namespace puppetri::verdict {
@@ -19,6 +20,7 @@ struct Product {
     std::vector<std::uint64_t> starts;          // of the edges of each node, and one more
     std::vector<std::uint32_t> targets;
     std::vector<std::uint32_t> edge;  // the number of the graph's edge
+    std::vector<std::uint8_t> stop;   // per state of the graph, empty: none
     bool complete = true;             // false: the graph was cut, or the budget ended
 
     std::uint32_t size() const { return static_cast<std::uint32_t>(state.size()); }
@@ -26,47 +28,48 @@ struct Product {
     bool broken(std::uint32_t node) const { return monitor[node] == Monitor::kBad; }
     AtomRow row(std::uint32_t node) const { return row_of(*graph, state[node]); }
     static AtomRow row_of(const proof::Graph& graph, std::uint32_t state);
-    // Nothing has to happen here any more: dead, or all that could is optional.
+    // Nothing has to happen here any more: dead, or all that could is optional, or the run stops.
     bool rests(std::uint32_t node) const {
         const std::uint32_t s = state[node];
-        return graph->dead(s) || (graph->flags[s] & proof::Graph::kOptional) != 0;
+        return graph->dead(s) || (graph->flags[s] & proof::Graph::kOptional) != 0 || stops(node);
     }
+    // The run may stop here with a fault.
+    bool stops(std::uint32_t node) const { return !stop.empty() && stop[state[node]] != 0; }
     bool final_marking(std::uint32_t node) const {
         return (graph->flags[state[node]] & proof::Graph::kFinal) != 0;
     }
+    // What follows is not known.
     bool cut(std::uint32_t node) const {
-        return (graph->flags[state[node]] & proof::Graph::kCut) != 0;
+        return (graph->flags[state[node]] & proof::Graph::kCut) != 0 && !stops(node);
     }
 };
 
 // Without a monitor: the graph itself. Broken nodes have no edges.
 // Cost    one step of the monitor per edge.
-Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uint64_t most_edges);
-
-// A token that waits to become ready: of one place, as far as the graph's atoms tell.
-struct Waiting {
-    std::uint32_t place = 0;
-    std::uint32_t unready = 0;                 // the atom "it has a token that is not ready"
-    std::vector<std::uint32_t> givers;         // transitions that give it tokens
-    std::optional<std::int64_t> at_most;       // ticks that a token waits at most
-};
+Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uint64_t most_edges,
+                     const std::vector<proof::Stop>& stops = {});
 
 using Nodes = std::vector<std::uint8_t>;  // per node: in the set or not
 
 // Nodes of cycles that stay in `open`, without edges in `left_out` (per product edge; may be
-// empty). Cycles on which one token stays unready for ever, though its time is finite, are none.
+// empty). Cycles on which something of one kind waits for ever, though its time is finite, are none
+// (`waits` may be null: then nothing is known of that).
 // Gives  one strongly connected component, or nothing.
 std::optional<std::vector<std::uint32_t>> endless(const Product& product, const Nodes& open,
                                                   const std::vector<std::uint8_t>& left_out,
-                                                  const std::vector<Waiting>& waiting);
+                                                  const proof::Waits* waits);
+
+// How long a wait of each kind lasts at most, in ticks; kNoLimit: nobody knows.
+inline constexpr std::int64_t kNoLimit = SimTime::never().ticks;
 
 // How many ticks at most a path stays in `open` from a node of `from` on; nothing: no bound is
-// known (it may stay for ever). By the ticks of the edges where the graph has them, else by tokens
-// that must become ready meanwhile: while a token of a place waits, no more time passes than its
-// place takes.
+// known (it may stay for ever). By the ticks of the edges where the graph has them and `by_ticks`,
+// else by what waits: while something of a kind waits, no more time passes than that kind takes.
+// Cost   what waits: O(nodes * edges) for each kind in the worst case, ended where it grows.
 std::optional<std::int64_t> longest_stay(const Product& product, const Nodes& open,
-                                         const std::vector<std::uint32_t>& from,
-                                         const std::vector<Waiting>& waiting);
+                                         const std::vector<std::uint32_t>& from, bool by_ticks,
+                                         const proof::Waits* waits,
+                                         const std::vector<std::int64_t>& at_most);
 
 // The number of edges from each node to the nearest node of the set, or kFar.
 inline constexpr std::uint32_t kFar = ~std::uint32_t{0};
