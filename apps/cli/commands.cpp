@@ -5,10 +5,21 @@
 namespace puppetri::cli {
 
 std::vector<Command> all_commands() {
+    // clang-format off
     return {
-        new_command(),    check_command(),  fmt_command(),     run_command(),     draw_command(),
-        export_command(), render_command(), explore_command(), convert_command(), query_command(),
+        new_command(),
+        check_command(),
+        fmt_command(),
+        run_command(),
+        prove_command(),
+        explore_command(),
+        query_command(),
+        draw_command(),
+        export_command(),
+        render_command(),
+        convert_command(),
     };
+    // clang-format on
 }
 
 }  // namespace puppetri::cli

@@ -12,6 +12,7 @@ Command new_command();
 Command check_command();
 Command fmt_command();
 Command run_command();
+Command prove_command();
 Command draw_command();
 Command export_command();
 Command render_command();

@@ -9,6 +9,7 @@
 #include "horizon.h"
 #include "interrupt.h"
 #include "puppetri/io/disk_files.h"
+#include "puppetri/io/witness_file.h"
 #include "puppetri/scene/events.h"
 #include "terminal.h"
 
@@ -20,7 +21,33 @@ std::vector<Option> with_performing_options(std::vector<Option> options) {
                        "a time (40s), frames (960f) or firings (1000x), instead of the scene's"});
     options.push_back(
         {"--events", Value::kText, "FILE", "outside events from a list or a recorded session"});
+    options.push_back({"--witness", Value::kText, "FILE",
+                       "perform the run of a witness that `puppetri prove` has written"});
     return options;
+}
+
+Result<verdict::Witness, int> load_witness(const std::string& path, const scene::Scene& scene) {
+    const auto text = io::DiskFiles().read(path);
+    if (!text) {
+        say_error(path + ": " + text.error().message);
+        return Unexpected<int>(kBadInput);
+    }
+    auto witness = io::read_witness(*text, path);
+    if (!witness) {
+        say_diagnostics(witness.error());
+        return Unexpected<int>(kBadInput);
+    }
+    if (witness->net_hash != scene.net.hash()) {
+        say_error(path + " belongs to another net: the scene has changed since; prove it again");
+        return Unexpected<int>(kBadInput);
+    }
+    for (const verdict::Witness::Event& e : witness->events) {
+        if (!scene.net.find_event(e.path).valid()) {
+            say_error(path + ": there is no event " + e.path);
+            return Unexpected<int>(kBadInput);
+        }
+    }
+    return std::move(*witness);
 }
 
 Result<scene::PerformOptions, int> perform_options(const Arguments& arguments,
@@ -41,6 +68,26 @@ Result<scene::PerformOptions, int> perform_options(const Arguments& arguments,
             return Unexpected<int>(kBadInput);
         }
         options.horizon = *horizon;
+    }
+    if (arguments.given("--witness")) {
+        auto witness = load_witness(arguments.text("--witness"), scene);
+        if (!witness) {
+            return Unexpected<int>(witness.error());
+        }
+        if (arguments.given("--seed") || arguments.given("--events")) {
+            say_error("a witness brings its own seed and events: leave out --seed and --events");
+            return Unexpected<int>(kBadInput);
+        }
+        options.seed = witness->seed;
+        options.script = std::move(witness->choices);
+        for (const verdict::Witness::Event& e : witness->events) {
+            options.events.push_back({e.at, scene.net.find_event(e.path)});
+        }
+        if (!options.horizon.given()) {
+            // Some time to look at what it comes to.
+            constexpr SimTime kAfter{2 * kTicksPerSecond};
+            options.horizon.time = witness->until + kAfter;
+        }
     }
     const std::string events = arguments.text("--events");
     if (!events.empty() && events != "-") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What commands that perform a scene share: the options --seed, --for and --events, and the way
+// What commands that perform a scene share: the options --seed, --for, --events and --witness, and the way
 // from a file to a finished performance with progress on the terminal.
 #pragma once
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "puppetri/scene/perform.h"
+#include "puppetri/verdict/witness.h"
 
 namespace puppetri::cli {
 
@@ -21,6 +22,9 @@ std::vector<Option> with_performing_options(std::vector<Option> options);
 // `--events -` is the caller's business.
 Result<scene::PerformOptions, int> perform_options(const Arguments& arguments,
                                                    const scene::Scene& scene);
+
+// A witness of this very scene. Says what is wrong and gives the exit code otherwise.
+Result<verdict::Witness, int> load_witness(const std::string& path, const scene::Scene& scene);
 
 // A scene and its performance, which looks at the scene.
 struct Staged {

@@ -38,8 +38,10 @@ Session::Session(const Scene& scene, const PerformOptions& options)
       horizon_(options.horizon.given() ? options.horizon : scene.horizon),
       limits_(limits_of(horizon_)),
       stage_(scene.play),
+      script_(options.script ? std::optional<net::ScriptedChooser>(*options.script) : std::nullopt),
       player_(scene.net, {.seed = options.seed.value_or(scene.seed),
                           .host = &stage_,
+                          .chooser = script_ ? &*script_ : nullptr,
                           .sink = options.sink,
                           .beat = scene.beat,
                           .record = options.record}) {

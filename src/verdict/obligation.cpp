@@ -41,8 +41,6 @@ std::string key_of(const Formula& f) {
     return key;
 }
 
-bool is_temporal(FormulaOp op) { return op >= FormulaOp::kAllNext; }
-
 // Which nodes speak of firings and occurrences, which of the host.
 struct Marks {
     std::vector<std::uint8_t> fires, host;
@@ -335,17 +333,17 @@ Obligation make_obligation(const net::Net& net, const net::Rule& rule, const Hos
         case net::RuleKind::kReversible:
             o.operands.push_back(make_operand(initial_marking(net), nullptr, atoms));
             break;
-        case net::RuleKind::kFormula: {
-            const Formula& f = rule.operands.front();
-            const bool plain = std::none_of(
-                f.nodes.begin(), f.nodes.end(),
-                [](const Formula::Node& n) { return is_temporal(n.op); });
-            if (plain) {  // of the start alone
-                o.operands.push_back(make_operand(f, host, atoms, &o.about_figures));
+        case net::RuleKind::kFormula:
+            o.temporal = proof::taken_apart(rule.operands.front());
+            for (const Formula& atom : o.temporal->atoms) {
+                const Operand operand = make_operand(atom, host, atoms, &o.about_figures);
+                const Operand::Node& n = operand.nodes.back();
+                const bool one = operand.nodes.size() == 1 && n.op == Operand::Node::Op::kAtom;
+                o.speaks_of_steps = o.speaks_of_steps || !one;
+                o.may_atoms.push_back(one ? n.may : 0);
+                o.must_atoms.push_back(one ? n.must : 0);
             }
-            o.temporal = f;
             break;
-        }
         default:
             for (const Formula& operand : rule.operands) {
                 o.operands.push_back(make_operand(operand, host, atoms, &o.about_figures));

@@ -329,7 +329,7 @@ class Attempt {
                 fault_ = true;
                 reason = "the run stops: " + player_.fault().message +
                          (player_.fault().element.empty() ? "" : " (" + player_.fault().element + ")");
-                if (wants_fault()) {
+                if (hunt_.fault_counts != nullptr && hunt_.fault_counts(player_.fault().code)) {
                     return found(player_.firings());
                 }
                 break;
@@ -394,7 +394,6 @@ class Attempt {
 
  private:
     bool wants(Target t) const { return target_ == t; }
-    bool wants_fault() const { return hunt_.obligation->rule == "builtin.nothing_stops"; }
 
     run::Limits limits(bool maybe, SimTime at) const {
         // Figures decide within some seconds after the firing.
@@ -608,6 +607,36 @@ Replayed replay(const Theatre& theatre, const Witness& witness, const Hunt& hunt
         out.trouble = "other transitions fired, or at other times";
     }
     return out;
+}
+
+std::optional<Witness> witness_of(const Theatre& theatre, const proof::Script& script,
+                                  std::string* trouble) {
+    Witness w;
+    w.net_hash = theatre.net->hash();
+    w.seed = theatre.seed;
+    w.choices = script.answers;
+    w.until = script.until;
+    std::vector<run::OutsideEvent> events;
+    for (const proof::Script::Outside& e : script.outside) {
+        w.events.push_back({e.at, std::string(theatre.net->event(e.event).path)});
+        events.push_back({e.at, e.event});
+    }
+    for (const proof::Script::Firing& f : script.firings) {
+        w.steps.push_back({f.at, std::string(theatre.net->transition(f.transition).path)});
+    }
+    net::ScriptedChooser chooser(w.choices);
+    Actors actors(theatre, chooser);
+    actors.player->schedule(events);
+    for (const proof::Script::Firing& f : script.firings) {
+        const run::Stop stop = actors.player->step();
+        if (stop != run::Stop::kNone || actors.player->last() != f.transition ||
+            actors.player->now() != f.at) {
+            *trouble = theatre.auto_durations ? "on the stage movements take other times"
+                                              : "the player fires something else";
+            return std::nullopt;
+        }
+    }
+    return w;
 }
 
 }  // namespace puppetri::verdict

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "puppetri/net/chooser.h"
 #include "puppetri/run/player.h"
 #include "puppetri/scene/scene.h"
 
@@ -19,6 +20,9 @@ struct PerformOptions {
     Horizon horizon;                        // instead of the scene's, where given
     std::vector<run::OutsideEvent> events;  // beside those that the scene schedules
     run::LogSink* sink = nullptr;           // hears of every firing
+    // The answers to all choices, as a witness or a recorded session has them; when they are used
+    // up, the first option, or what the stream says. Left out: chance decides, from the seed.
+    std::optional<std::vector<std::int64_t>> script;
     bool record = false;                    // keep the outside events in Performed::recording
     // Asked about 20 times a second of model time, with the share done; answering false ends the
     // run cleanly.
@@ -72,6 +76,7 @@ class Session {
     Horizon horizon_;
     run::Limits limits_;
     stage::Stage stage_;
+    std::optional<net::ScriptedChooser> script_;
     run::Player player_;
     run::Stop stop_ = run::Stop::kLimit;
     bool interrupted_ = false;

@@ -45,6 +45,8 @@ struct Hunt {
     // From the theatre's net to the graph's: kNone where the graph does not have it. Empty: the
     // same.
     std::vector<std::uint32_t> transitions, events;
+    // Not the rule is broken but the run stops: codes of faults that count (nullptr: none).
+    bool (*fault_counts)(const std::string& code) = nullptr;
 };
 
 struct Caught {
@@ -60,5 +62,10 @@ struct Replayed {
     std::string trouble;    // if not
 };
 Replayed replay(const Theatre& theatre, const Witness& witness, const Hunt& hunt);
+
+// A witness from the script of a path of an exact graph: played again, firing by firing. Nothing if
+// the player (the stage) does something else; `trouble` says what.
+std::optional<Witness> witness_of(const Theatre& theatre, const proof::Script& script,
+                                  std::string* trouble);
 
 }  // namespace puppetri::verdict

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Rules that the arcs alone prove: invariants for what must never be, theorems of liveness. Holds
+// for every timing, so it is tried first.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "builtin_rules.h"
+#include "puppetri/proof/budget.h"
+#include "puppetri/proof/plain_net.h"
+#include "puppetri/verdict/obligation.h"
+
+namespace puppetri::verdict {
+
+struct StructuralProof {
+    std::string method;              // "invariants", "theorem"
+    std::vector<std::string> notes;  // which
+    bool every_choice = false;
+};
+
+class Structure {
+ public:
+    explicit Structure(const net::Net& net);
+    // Nothing: these methods cannot say.
+    std::optional<StructuralProof> prove(const Asked& asked, const HostLowering* host,
+                                         const proof::Budget& budget);
+
+ private:
+    std::optional<StructuralProof> by_invariants(const net::Rule& rule, const HostLowering* host,
+                                                 const proof::Budget& budget);
+    std::optional<StructuralProof> by_theorem(const proof::Budget& budget);
+
+    const net::Net& net_;
+    proof::Plain plain_;
+    std::vector<std::uint8_t> emptied_;
+    std::vector<std::string> names_;
+    std::optional<bool> live_;
+    std::string theorem_;
+};
+
+}  // namespace puppetri::verdict

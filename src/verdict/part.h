@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// A part of a net that shares nothing with the rest, the rules that read it, and its graphs, each
+// made when it is first asked for.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "builtin_rules.h"
+#include "puppetri/proof/timed_graph.h"
+#include "puppetri/verdict/check_graph.h"
+#include "puppetri/verdict/figure_lowering.h"
+#include "puppetri/verdict/pursue.h"
+
+namespace puppetri::verdict {
+
+enum class Method : std::uint8_t { kReadiness, kExact, kClasses };
+const char* name_of(Method method);
+
+class Part {
+ public:
+    // The whole net. Theatre and host outlive it.
+    Part(const net::Net& whole, const Theatre& theatre, const HostLowering* host);
+    // One part of it, compiled from `draft`; play may be null.
+    static std::unique_ptr<Part> of(net::NetDraft draft, const Theatre& theatre,
+                                    const stage::Play* play);
+
+    const net::Net& net() const { return *net_; }
+    // The rule of this path in the part's own numbers; null: it does not lie in it.
+    const Asked* asked(const std::string& path) const;
+    std::uint32_t add(Asked asked);
+    const Asked& asked(std::uint32_t i) const { return asked_[i]; }
+    const Obligation& obligation(std::uint32_t i) const { return obligations_[i]; }
+    std::uint32_t rules() const { return static_cast<std::uint32_t>(asked_.size()); }
+
+    // Null: the method does not treat this net, or is not to be tried; `why` says so.
+    const proof::TimedGraph* graph(Method method, const proof::Budget& budget,
+                                   std::uint32_t outside_events, std::string& why);
+    GraphView view(Method method) const;
+    void forget(Method method);
+
+    // From the numbers of the whole net to those of the part; empty: the same.
+    std::vector<std::uint32_t> transitions, events;
+
+ private:
+    Part() = default;
+    std::optional<net::Net> own_;
+    const net::Net* net_ = nullptr;
+    const Theatre* theatre_ = nullptr;
+    const HostLowering* host_ = nullptr;
+    std::unique_ptr<FigureLowering> own_host_;
+    Atoms atoms_;
+    std::vector<Asked> asked_;
+    std::vector<Obligation> obligations_;
+    std::optional<proof::TimedGraph> graphs_[3];
+    std::string why_[3];
+};
+
+}  // namespace puppetri::verdict

@@ -1,0 +1,835 @@
+// SPDX-License-Identifier: MIT
+// The order of methods. For each rule: arcs and theorems; the readiness graph of its part, which
+// holds for every timing; then what knows times: exact ones, classes of them. A suspect is pursued
+// by the player at once; if no run shows it, the next method may clear it or show it better.
+#include "puppetri/verdict/prove.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "builtin_rules.h"
+#include "by_structure.h"
+#include "part.h"
+#include "puppetri/net/tables.h"
+#include "puppetri/proof/components.h"
+#include "puppetri/proof/slice.h"
+#include "temporal_rule.h"
+
+namespace puppetri::verdict {
+namespace {
+
+using Kind = Finding::Kind;
+using Target = Finding::Target;
+
+constexpr std::uint64_t kMostEdges = 40'000'000;  // of a graph watched by a monitor
+
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+struct Work {
+    Asked asked;  // in the numbers of the whole net
+    Verdict verdict;
+    bool done = false;
+    double seconds = 0;
+};
+
+class Prover {
+ public:
+    Prover(const net::NetDraft& draft, Theatre theatre, const stage::Play* play,
+           const ProveOptions& options)
+        : draft_(draft),
+          theatre_(std::move(theatre)),
+          net_(*theatre_.net),
+          play_(play),
+          options_(options),
+          started_(now_s()),
+          structure_(net_) {
+        if (play_ != nullptr) {
+            host_ = std::make_unique<FigureLowering>(net_, *play_);
+        }
+    }
+
+    std::vector<Verdict> run(std::vector<Asked> rules) {
+        for (Asked& asked : rules) {
+            Work w;
+            w.asked = std::move(asked);
+            const net::Rule& rule = w.asked.rule;
+            w.verdict.rule = rule.path;
+            w.verdict.caption = rule.caption;
+            w.verdict.where = rule.where;
+            w.verdict.built_in = w.asked.built_in;
+            works_.push_back(std::move(w));
+        }
+        for (Work& w : works_) {
+            by_structure(w);
+        }
+        for (const std::vector<std::uint32_t>& group : groups()) {
+            by_graphs(group);
+        }
+        std::vector<Verdict> out;
+        for (Work& w : works_) {
+            if (!w.done) {
+                finish(w);
+            }
+            out.push_back(std::move(w.verdict));
+        }
+        return out;
+    }
+
+ private:
+    // ---- budgets ----
+
+    double left() const { return options_.budget.seconds - (now_s() - started_); }
+    bool cancelled() const {
+        return options_.budget.cancelled != nullptr && options_.budget.cancelled->load();
+    }
+    proof::Budget budget(double share) const {
+        proof::Budget b = options_.budget;
+        b.seconds = std::max(0.0, left() * share);
+        return b;
+    }
+
+    void finish(Work& w) {
+        w.done = true;
+        w.verdict.seconds = w.seconds;
+        if (w.verdict.answer == Answer::kUnknown && w.verdict.reason.empty()) {
+            w.verdict.reason = cancelled()   ? "stopped before an answer"
+                               : left() <= 0 ? "out of time"
+                                             : "no method can say";
+        }
+        if (options_.tell != nullptr) {
+            options_.tell(options_.context, w.verdict);
+        }
+    }
+
+    // ---- structure ----
+
+    void by_structure(Work& w) {
+        const double begin = now_s();
+        proof::Budget b = budget(0.1);
+        b.seconds = std::min(b.seconds, 5.0);
+        if (const auto proof = structure_.prove(w.asked, host_.get(), b)) {
+            w.verdict.answer = Answer::kProved;
+            w.verdict.method = proof->method;
+            w.verdict.notes = proof->notes;
+            w.seconds += now_s() - begin;
+            finish(w);
+            return;
+        }
+        w.seconds += now_s() - begin;
+        if (w.asked.question == Question::kOneOfEach) {
+            w.verdict.reason = "an arc may lose, copy or make up an identity";
+            finish(w);
+        }
+    }
+
+    // ---- parts ----
+
+    static bool whole(const Asked& asked) {
+        return asked.question != Question::kRule || reads_whole_net(asked.rule);
+    }
+
+    // Open rules by the parts of the net that they read; what reads everything comes together.
+    std::vector<std::vector<std::uint32_t>> groups() {
+        std::vector<std::vector<std::uint32_t>> out;
+        std::vector<std::uint32_t> open;
+        for (std::uint32_t i = 0; i < works_.size(); ++i) {
+            if (!works_[i].done) {
+                open.push_back(i);
+            }
+        }
+        if (open.empty()) {
+            return out;
+        }
+        split();
+        if (parts_.count <= 1) {
+            part_of_group_.push_back(kWhole);
+            out.push_back(std::move(open));
+            return out;
+        }
+        std::vector<std::vector<std::uint32_t>> of_part(parts_.count);
+        std::vector<std::uint32_t> everywhere;
+        for (const std::uint32_t i : open) {
+            const auto read = parts_read(works_[i].asked);
+            if (read.size() == 1) {
+                of_part[read[0]].push_back(i);
+            } else {
+                everywhere.push_back(i);
+            }
+        }
+        for (std::uint32_t p = 0; p < parts_.count; ++p) {
+            if (!of_part[p].empty()) {
+                part_of_group_.push_back(p);
+                out.push_back(std::move(of_part[p]));
+            }
+        }
+        if (!everywhere.empty()) {
+            part_of_group_.push_back(kWhole);
+            out.push_back(std::move(everywhere));
+        }
+        return out;
+    }
+
+    // The lowered draft, if its numbers are those of the net.
+    void split() {
+        auto lowered = net::lower(draft_);
+        parts_.count = 1;
+        if (!lowered || lowered->places.size() != net_.place_count() ||
+            lowered->transitions.size() != net_.transition_count()) {
+            return;
+        }
+        for (std::uint32_t p = 0; p < net_.place_count(); ++p) {
+            if (lowered->places[p].path != net_.place(net::PlaceIndex{p}).path) {
+                return;
+            }
+        }
+        for (std::uint32_t t = 0; t < net_.transition_count(); ++t) {
+            if (lowered->transitions[t].path != net_.transition(net::TransitionIndex{t}).path) {
+                return;
+            }
+        }
+        lowered_ = std::move(*lowered);
+        parts_ = proof::components(lowered_);
+        // Parts that a rule or an end compares are one.
+        std::vector<std::uint32_t> to(parts_.count);
+        for (std::uint32_t i = 0; i < parts_.count; ++i) {
+            to[i] = i;
+        }
+        const auto root = [&](std::uint32_t i) {
+            while (to[i] != i) {
+                i = to[i] = to[to[i]];
+            }
+            return i;
+        };
+        const auto join = [&](const std::vector<std::uint32_t>& list) {
+            for (const std::uint32_t i : list) {
+                to[root(i)] = root(list[0]);
+            }
+        };
+        for (const Work& w : works_) {
+            if (!w.done && !whole(w.asked)) {
+                join(parts_read(w.asked));
+            }
+        }
+        net::Rule ends;
+        for (const net::NetTables::FinalMarking& f : net_.tables().finals) {
+            ends.operands.push_back(f.condition);
+        }
+        Asked asked;
+        asked.rule = ends;
+        join(parts_read(asked));
+        std::vector<std::uint32_t> number(parts_.count, kWhole);
+        std::uint32_t count = 0;
+        for (std::uint32_t i = 0; i < parts_.count; ++i) {
+            if (root(i) == i) {
+                number[i] = count++;
+            }
+        }
+        for (std::uint32_t& p : parts_.of_place) {
+            p = number[root(p)];
+        }
+        for (std::uint32_t& t : parts_.of_transition) {
+            t = number[root(t)];
+        }
+        parts_.count = count;
+    }
+
+    std::vector<std::uint32_t> parts_read(const Asked& asked) const {
+        std::vector<std::uint32_t> out;
+        if (whole(asked)) {
+            return out;
+        }
+        const proof::SliceRoots roots = proof::roots_of(asked.rule);
+        for (const std::uint32_t p : roots.places) {
+            out.push_back(parts_.of_place[p]);
+        }
+        for (const std::uint32_t t : roots.transitions) {
+            out.push_back(parts_.of_transition[t]);
+        }
+        // Whoever reads data, events or figures is left with the whole net unless places say more.
+        if (!roots.data.empty() || !roots.events.empty()) {
+            for (std::uint32_t t = 0; t < parts_.of_transition.size(); ++t) {
+                out.push_back(parts_.of_transition[t]);
+            }
+        }
+        for (const net::Formula& f : asked.rule.operands) {
+            for (const net::Formula::Node& n : f.nodes) {
+                if (n.op == net::FormulaOp::kHost) {
+                    add_figures(n.index, out);
+                }
+            }
+        }
+        std::sort(out.begin(), out.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
+        return out;
+    }
+    // All parts with movements of the actor or the prop that the atom speaks of.
+    void add_figures(std::uint32_t atom, std::vector<std::uint32_t>& out) const {
+        const std::vector<net::HostAtom>& atoms = net_.declarations().host_atoms;
+        if (play_ == nullptr || atom >= atoms.size()) {
+            return;
+        }
+        for (std::uint32_t p = 0; p < net_.place_count(); ++p) {
+            const net::ActionIndex action = net_.action(net::PlaceIndex{p});
+            if (!action.valid() || action.value >= play_->actions.size()) {
+                continue;
+            }
+            const motion::BoundCall& call = play_->actions[action.value].call;
+            const bool prop = call.subject.kind == motion::SubjectKind::kProp;
+            const std::string& who = prop ? play_->cast.props[call.subject.prop.value].name
+                                          : play_->cast.actors[call.subject.actor.value].name;
+            const motion::PropIndex claimed = claimed_prop(call);
+            if (atoms[atom].subject.starts_with(who + ".") || atoms[atom].subject == who ||
+                (claimed.valid() && atoms[atom].kind == net::HostAtom::Kind::kHolder)) {
+                out.push_back(parts_.of_place[p]);
+            }
+        }
+    }
+
+    // ---- graphs ----
+
+    void by_graphs(const std::vector<std::uint32_t>& group) {
+        const std::uint32_t which = part_of_group_[next_group_++];
+        std::unique_ptr<Part> part;
+        if (which == kWhole) {
+            if (parts_.count > 1 && by_parts(group)) {
+                return;
+            }
+            part = std::make_unique<Part>(net_, theatre_, host_.get());
+        } else {
+            part = make_part(which, group);
+        }
+        if (part == nullptr) {
+            part = std::make_unique<Part>(net_, theatre_, host_.get());
+        }
+        examine(*part, group);
+    }
+
+    std::unique_ptr<Part> make_part(std::uint32_t which, const std::vector<std::uint32_t>& group) {
+        // Rules that the language does not know travel as rules of the draft.
+        net::NetDraft draft = lowered_;
+        draft.rules.clear();
+        for (const std::uint32_t i : group) {
+            draft.rules.push_back(works_[i].asked.rule);
+        }
+        proof::DraftSlice slice = proof::component(draft, parts_, which);
+        return Part::of(std::move(slice.draft), theatre_, play_);
+    }
+
+    // Rules about the whole net, asked of each part: all parts keep them, or (for rest) one does.
+    bool by_parts(const std::vector<std::uint32_t>& group) {
+        std::vector<std::uint32_t> rest;
+        std::vector<Verdict> sums(group.size());
+        std::vector<std::uint8_t> good(group.size(), 1), once(group.size(), 0);
+        for (std::uint32_t p = 0; p < parts_.count; ++p) {
+            auto part = make_part(p, {});
+            if (part == nullptr) {
+                return false;
+            }
+            for (std::size_t k = 0; k < group.size(); ++k) {
+                const Work& w = works_[group[k]];
+                if (!splits(w.asked)) {
+                    good[k] = 0;
+                    continue;
+                }
+                Asked own = w.asked;  // reads nothing by number
+                own.rule.operands.clear();
+                own.rule.transitions.clear();
+                const std::uint32_t number = part->add(std::move(own));
+                Verdict v;
+                std::optional<Finding> f = check(*part, number, Method::kReadiness, v);
+                const bool holds = f && f->kind == Kind::kHolds;
+                once[k] |= holds ? 1 : 0;
+                good[k] &= holds || w.asked.rule.kind == net::RuleKind::kDeadlockFree ? 1 : 0;
+                sums[k].states += v.states;
+                sums[k].edges += v.edges;
+                if (f && f->force != Force::kPlain) {
+                    sums[k].force = f->force;
+                }
+            }
+        }
+        bool all = true;
+        for (std::size_t k = 0; k < group.size(); ++k) {
+            Work& w = works_[group[k]];
+            const bool of_one = w.asked.question == Question::kRule &&
+                                w.asked.rule.kind == net::RuleKind::kDeadlockFree;
+            if (good[k] != 0 && (!of_one || once[k] != 0)) {
+                w.verdict.answer = Answer::kProved;
+                w.verdict.force = sums[k].force;
+                w.verdict.method = std::string("readiness graphs of ") +
+                                   std::to_string(parts_.count) + " parts";
+                w.verdict.states = sums[k].states;
+                w.verdict.edges = sums[k].edges;
+                finish(w);
+            } else {
+                all = false;
+            }
+        }
+        return all;
+    }
+    // A part can be asked by itself, and the answers put together.
+    static bool splits(const Asked& asked) {
+        if (asked.question == Question::kOneOfEach) {
+            return false;
+        }
+        if (asked.question != Question::kRule) {
+            return true;
+        }
+        switch (asked.rule.kind) {
+            case net::RuleKind::kDeadlockFree:
+            case net::RuleKind::kEnds:
+                return true;
+            case net::RuleKind::kLive:
+            case net::RuleKind::kQuasiLive:
+                return asked.rule.transitions.empty();
+            case net::RuleKind::kBounded:
+                return asked.rule.operands.empty();
+            default:
+                return false;
+        }
+    }
+
+    void examine(Part& part, const std::vector<std::uint32_t>& group) {
+        std::vector<std::uint32_t> open, numbers;
+        for (const std::uint32_t i : group) {
+            if (works_[i].done) {
+                continue;
+            }
+            Asked own = works_[i].asked;
+            if (&part.net() != &net_) {
+                const std::vector<net::Rule>& rules = part.net().declarations().rules;
+                const auto found =
+                    std::find_if(rules.begin(), rules.end(),
+                                 [&](const net::Rule& r) { return r.path == own.rule.path; });
+                if (found == rules.end()) {
+                    works_[i].verdict.reason = "its part of the net could not be told";
+                    finish(works_[i]);
+                    continue;
+                }
+                own.rule = *found;
+            }
+            open.push_back(i);
+            numbers.push_back(part.add(std::move(own)));
+        }
+        for (const Method method : {Method::kReadiness, Method::kExact, Method::kClasses}) {
+            for (std::size_t k = 0; k < open.size(); ++k) {
+                Work& w = works_[open[k]];
+                if (w.done || left() <= 0 || cancelled()) {
+                    continue;
+                }
+                if (method != Method::kReadiness && !worth(part, method)) {
+                    continue;
+                }
+                const double begin = now_s();
+                judge(part, numbers[k], method, w);
+                w.seconds += now_s() - begin;
+                if (w.verdict.answer != Answer::kUnknown) {
+                    finish(w);
+                }
+            }
+        }
+        for (const std::uint32_t i : open) {
+            if (!works_[i].done) {
+                finish(works_[i]);
+            }
+        }
+    }
+
+    // Whether time may tell more: not where there is none, and exact times only where they are.
+    bool worth(Part& part, Method method) {
+        std::string why;
+        const proof::TimedGraph* readiness =
+            part.graph(Method::kReadiness, budget(0.4), options_.outside_events, why);
+        if (readiness != nullptr && readiness->graph.exact &&
+            readiness->graph.ended == proof::Ended::kDone) {
+            return false;
+        }
+        if (method == Method::kExact) {
+            return !inexact_durations(part.net());
+        }
+        return true;
+    }
+    bool inexact_durations(const net::Net& net) const {
+        const net::NetTables& tables = net.tables();
+        const auto inexact = [&](const net::DurationTable& d, std::uint32_t place) {
+            if (d.kind == net::DurationKind::kAuto) {
+                const net::ActionIndex a =
+                    place == net::kNoIndex ? net::ActionIndex{} : net.action(net::PlaceIndex{place});
+                return !a.valid() || a.value >= theatre_.actions.size() ||
+                       theatre_.actions[a.value].low != theatre_.actions[a.value].high;
+            }
+            return d.kind == net::DurationKind::kInterval ||
+                   d.kind == net::DurationKind::kDistribution;
+        };
+        for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+            const std::uint32_t d = tables.place[p].duration;
+            if (d != net::kNoIndex && inexact(tables.durations[d], p)) {
+                return true;
+            }
+        }
+        return std::any_of(tables.delays.begin(), tables.delays.end(),
+                           [&](const net::DelayTable& d) {
+                               return inexact(d.duration, net::kNoIndex);
+                           });
+    }
+
+    // The finding of one method, and what it cost.
+    std::optional<Finding> check(Part& part, std::uint32_t number, Method method, Verdict& v) {
+        std::string why;
+        const proof::TimedGraph* graph = part.graph(method, budget(method == Method::kReadiness ? 0.4 : 0.6),
+                                                    options_.outside_events, why);
+        if (graph == nullptr) {
+            if (v.reason.empty()) {
+                v.reason = std::string(name_of(method)) + ": " + why;
+            }
+            return std::nullopt;
+        }
+        v.states = graph->graph.size();
+        v.edges = graph->graph.edges.items.size();
+        const Asked& asked = part.asked(number);
+        const GraphView view = part.view(method);
+        if (asked.question != Question::kRule) {
+            return check_question(asked.question, view);
+        }
+        if (part.obligation(number).temporal) {
+            return check_temporal(part.net(), part.obligation(number), view, budget(0.5));
+        }
+        return check_on_graph(part.net(), part.obligation(number), view, kMostEdges);
+    }
+
+    static Finding check_question(Question question, const GraphView& view) {
+        Finding f;
+        const proof::TimedGraph& timed = *view.timed;
+        f.product = make_product(timed.graph, nullptr, kMostEdges, timed.stops);
+        const Product& p = f.product;
+        f.targets.assign(p.size(), 0);
+        const bool covers = timed.graph.over && p.complete;
+        std::vector<std::uint32_t> at;  // states that stop for this reason
+        for (const proof::Stop& stop : timed.stops) {
+            if (concerns(question, stop.fault.code)) {
+                at.push_back(stop.state);
+                f.reason = stop.fault.message;
+            }
+        }
+        for (std::uint32_t n = 0; n < p.size(); ++n) {
+            f.targets[n] = std::find(at.begin(), at.end(), p.state[n]) != at.end() ? 1 : 0;
+        }
+        if (question == Question::kTimeGoesOn) {
+            std::vector<std::uint8_t> passes(p.targets.size(), 0);
+            for (std::uint64_t e = 0; e < p.targets.size(); ++e) {
+                passes[e] = p.label(e) == proof::Edge::kPass ? 1 : 0;
+            }
+            const Nodes all(p.size(), 1);
+            if (const auto cycle = endless(p, all, passes, nullptr)) {
+                for (const std::uint32_t n : *cycle) {
+                    f.targets[n] = 1;
+                }
+                f.reason = "one instant may last for ever: firings go round without time passing";
+                at.push_back(0);
+            }
+        }
+        if (!at.empty()) {
+            f.kind = Kind::kSuspect;
+            f.target = Target::kBroken;
+            return f;
+        }
+        if (covers) {
+            f.kind = Kind::kHolds;
+            f.product = {};
+        } else {
+            f.reason = timed.graph.ended != proof::Ended::kDone
+                           ? std::string("not all states were looked at: ") +
+                                 proof::name_of(timed.graph.ended)
+                           : "not all states were looked at";
+        }
+        return f;
+    }
+
+    void judge(Part& part, std::uint32_t number, Method method, Work& w) {
+        std::optional<Finding> f = check(part, number, method, w.verdict);
+        if (!f) {
+            return;
+        }
+        const proof::TimedGraph& graph = *part.view(method).timed;
+        const bool possible = w.asked.question == Question::kRule &&
+                              (w.asked.rule.kind == net::RuleKind::kPossible ||
+                               w.asked.rule.kind == net::RuleKind::kQuasiLive);
+        switch (f->kind) {
+            case Kind::kHolds:
+                w.verdict.answer = Answer::kProved;
+                w.verdict.force = f->force;
+                w.verdict.method = name_of(method);
+                w.verdict.assumptions = graph.assumptions;
+                w.verdict.reason.clear();
+                w.verdict.notes.insert(w.verdict.notes.end(), f->notes.begin(), f->notes.end());
+                if (f->force == Force::kProbabilityOne) {
+                    w.verdict.notes.push_back("REFUTED " + f->reason);
+                    chase(part, *f, w, false);
+                }
+                return;
+            case Kind::kImpossible:
+                w.verdict.answer = Answer::kRefuted;
+                w.verdict.method = name_of(method);
+                w.verdict.assumptions = graph.assumptions;
+                w.verdict.reason = f->reason;
+                return;
+            case Kind::kRefuted:
+                refuted(part, graph, *f, w, method);
+                return;
+            case Kind::kSuspect:
+                if (f->target == Target::kFires) {
+                    all_fire(part, *f, w, method);
+                    return;
+                }
+                chase(part, *f, w, true);
+                if (w.verdict.answer != Answer::kUnknown) {
+                    w.verdict.method = name_of(method);
+                } else if (possible && graph.graph.exact) {
+                    w.verdict.answer = Answer::kProved;
+                    w.verdict.method = name_of(method);
+                    w.verdict.assumptions = graph.assumptions;
+                    w.verdict.reason.clear();
+                }
+                return;
+            case Kind::kUnknown:
+                w.verdict.reason = std::string(name_of(method)) + ": " + f->reason;
+                return;
+        }
+    }
+
+    // By a path of an exact graph of the whole net: it counts if the player goes it.
+    void refuted(const Part& part, const proof::TimedGraph& graph, const Finding& f, Work& w,
+                 Method method) {
+        w.verdict.reason = f.reason;
+        if (f.path.empty() && f.loop_from == kFar) {
+            w.verdict.notes.push_back("no single run shows it: it is about choices");
+        } else {
+            std::string trouble = "it lies in a part of the net";
+            const bool whole_net = &part.net() == &net_;
+            const auto script = whole_net ? graph.script(f.path, &trouble) : std::nullopt;
+            auto witness = script ? witness_of(theatre_, *script, &trouble) : std::nullopt;
+            if (!witness) {
+                w.verdict.reason = f.reason + ", but the player does not go that way: " + trouble;
+                return;
+            }
+            witness->rule = w.verdict.rule;
+            witness->says = f.reason;
+            if (f.loop_from != kFar) {
+                witness->lasso_from = firings_along(graph.graph, f.path, f.loop_from);
+            } else {
+                witness->violates_after = static_cast<std::uint32_t>(witness->steps.size());
+            }
+            w.verdict.witness = std::move(witness);
+        }
+        w.verdict.answer = Answer::kRefuted;
+        w.verdict.method = name_of(method);
+        w.verdict.assumptions = graph.assumptions;
+    }
+    static std::uint32_t firings_along(const proof::Graph& graph,
+                                       const std::vector<std::uint32_t>& path, std::uint32_t to) {
+        std::uint32_t firings = 0;
+        for (std::uint32_t i = 0; i < to && i < path.size(); ++i) {
+            firings += (graph.edges.items[path[i]].label & proof::Edge::kEvent) == 0 ? 1 : 0;
+        }
+        return firings;
+    }
+
+    // The rule in the numbers of the whole net, as runs are watched.
+    struct Watched {
+        Atoms atoms;
+        Obligation obligation;
+        std::unique_ptr<AtomReader> reader;
+    };
+    Watched watched(const Asked& asked) const {
+        Watched w;
+        w.obligation = make_obligation(net_, asked.rule, host_.get(), w.atoms);
+        if (asked.rule.path.starts_with("builtin.one_movement")) {
+            w.obligation.about_figures = true;
+        }
+        w.reader = std::make_unique<AtomReader>(net_, w.atoms.formulas());
+        return w;
+    }
+    PursueLimits limits() const {
+        PursueLimits l;
+        l.seconds = std::clamp(left() * 0.3, 0.0, 10.0);
+        l.cancelled = options_.budget.cancelled;
+        return l;
+    }
+
+    static bool (*fault_of(Question question))(const std::string&) {
+        switch (question) {
+            case Question::kTimeGoesOn:
+                return [](const std::string& c) { return concerns(Question::kTimeGoesOn, c); };
+            case Question::kModulesEndClean:
+                return [](const std::string& c) { return concerns(Question::kModulesEndClean, c); };
+            case Question::kDataInRange:
+                return [](const std::string& c) { return concerns(Question::kDataInRange, c); };
+            case Question::kNothingStops:
+                return [](const std::string& c) { return concerns(Question::kNothingStops, c); };
+            default:
+                return nullptr;
+        }
+    }
+
+    // A suspect becomes REFUTED (of `possible`: PROVED) by a run. `decides` false: the run is only
+    // kept as a picture.
+    void chase(Part& part, const Finding& f, Work& w, bool decides) {
+        const Watched watch = watched(w.asked);
+        const Hunt hunt{.obligation = &watch.obligation,
+                        .reader = watch.reader.get(),
+                        .finding = &f,
+                        .transitions = part.transitions,
+                        .events = part.events,
+                        .fault_counts = fault_of(w.asked.question)};
+        Caught caught = pursue(theatre_, hunt, limits());
+        if (!caught.witness) {
+            if (decides) {
+                w.verdict.reason = f.reason + ", but no run was found that does it (" +
+                                   caught.reason + ")";
+            }
+            return;
+        }
+        caught.witness->says = f.reason;
+        w.verdict.witness = std::move(caught.witness);
+        if (!decides) {
+            return;
+        }
+        const bool possible = w.asked.question == Question::kRule &&
+                              w.asked.rule.kind == net::RuleKind::kPossible;
+        w.verdict.answer = possible ? Answer::kProved : Answer::kRefuted;
+        w.verdict.reason = possible ? "" : f.reason;
+    }
+
+    // A run for each transition.
+    void all_fire(Part& part, Finding& f, Work& w, Method method) {
+        const Watched watch = watched(w.asked);
+        for (const std::uint32_t t : watch.obligation.transitions) {
+            f.transition = t;
+            const Hunt hunt{.obligation = &watch.obligation,
+                            .reader = watch.reader.get(),
+                            .finding = &f,
+                            .transitions = part.transitions,
+                            .events = part.events};
+            const Caught caught = pursue(theatre_, hunt, limits());
+            if (!caught.witness) {
+                w.verdict.reason =
+                    "no run was found in which " +
+                    std::string(net_.transition(net::TransitionIndex{t}).path) + " fires";
+                return;
+            }
+        }
+        w.verdict.answer = Answer::kProved;
+        w.verdict.method = std::string(name_of(method)) + " and runs";
+        w.verdict.reason.clear();
+    }
+
+    static constexpr std::uint32_t kWhole = ~std::uint32_t{0};
+
+    const net::NetDraft& draft_;
+    const Theatre theatre_;
+    const net::Net& net_;
+    const stage::Play* play_;
+    const ProveOptions& options_;
+    const double started_;
+    Structure structure_;
+    std::unique_ptr<FigureLowering> host_;
+    std::vector<Work> works_;
+    net::NetDraft lowered_;
+    proof::Components parts_;
+    std::vector<std::uint32_t> part_of_group_;
+    std::size_t next_group_ = 0;
+};
+
+bool wanted(const std::string& path, const std::string& only) {
+    return only.empty() || path == only || path.starts_with(only + ".");
+}
+
+std::vector<Asked> chosen(std::vector<Asked> all, const ProveOptions& options) {
+    std::erase_if(all, [&](const Asked& a) {
+        return !wanted(a.rule.path, options.only) || (a.built_in && !options.built_in);
+    });
+    return all;
+}
+
+std::vector<Asked> all_rules(const scene::Scene& scene) {
+    std::vector<Asked> out;
+    bool freezes = false;
+    for (const net::Rule& rule : scene.rules()) {
+        Asked a;
+        a.rule = rule;
+        if (rule.kind == net::RuleKind::kNobodyFreezes) {
+            const std::size_t actors = scene.play.cast.actors.size();
+            freezes = freezes || rule.operands.size() == actors;
+            for (std::size_t i = 0; rule.subjects.empty() && rule.operands.size() == actors &&
+                                    a.rule.subjects.size() < actors;
+                 ++i) {
+                a.rule.subjects.push_back(scene.play.cast.actors[i].name);
+            }
+        }
+        out.push_back(std::move(a));
+    }
+    for (Asked& a : built_in_rules(scene.net, scene.draft, &scene.play)) {
+        if (!freezes || a.rule.kind != net::RuleKind::kNobodyFreezes) {
+            out.push_back(std::move(a));
+        }
+    }
+    return out;
+}
+
+std::vector<Asked> all_rules(const net::NetDraft& draft, const net::Net& net) {
+    std::vector<Asked> out;
+    for (const net::Rule& rule : net.declarations().rules) {
+        Asked a;
+        a.rule = rule;
+        out.push_back(std::move(a));
+    }
+    if (out.empty()) {
+        const auto ask = [&](const char* path, const char* caption, net::RuleKind kind) {
+            Asked a;
+            a.rule.path = path;
+            a.rule.caption = caption;
+            a.rule.kind = kind;
+            a.rule.count = kind == net::RuleKind::kBounded ? net::Rule::kNoCount : 1;
+            out.push_back(std::move(a));
+        };
+        ask("deadlock_free", "the net stops in ends only", net::RuleKind::kDeadlockFree);
+        ask("bounded", "no place grows without end", net::RuleKind::kBounded);
+        ask("quasi_live", "every transition can fire", net::RuleKind::kQuasiLive);
+        ask("live", "every transition can always fire again", net::RuleKind::kLive);
+        ask("reversible", "the start can always be reached again", net::RuleKind::kReversible);
+    }
+    for (Asked& a : built_in_rules(net, draft, nullptr)) {
+        out.push_back(std::move(a));
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<Verdict> prove(const scene::Scene& scene, const ProveOptions& options) {
+    Prover prover(scene.draft, theatre_of(scene), &scene.play, options);
+    return prover.run(chosen(all_rules(scene), options));
+}
+
+std::vector<Verdict> prove(const net::NetDraft& draft, const net::Net& net,
+                           const ProveOptions& options) {
+    Prover prover(draft, theatre_of(net), nullptr, options);
+    return prover.run(chosen(all_rules(draft, net), options));
+}
+
+std::vector<net::Rule> rules_of(const scene::Scene& scene) {
+    std::vector<net::Rule> out;
+    for (Asked& a : all_rules(scene)) {
+        out.push_back(std::move(a.rule));
+    }
+    return out;
+}
+
+std::vector<net::Rule> rules_of(const net::Net& net) { return net.declarations().rules; }
+
+}  // namespace puppetri::verdict
