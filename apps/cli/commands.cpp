@@ -12,6 +12,7 @@ std::vector<Command> all_commands() {
         fmt_command(),
         run_command(),
         prove_command(),
+        explain_command(),
         explore_command(),
         query_command(),
         draw_command(),

@@ -13,6 +13,7 @@ Command check_command();
 Command fmt_command();
 Command run_command();
 Command prove_command();
+Command explain_command();
 Command draw_command();
 Command export_command();
 Command render_command();

@@ -14,6 +14,7 @@
 #include "puppetri/io/disk_files.h"
 #include "puppetri/scene/events.h"
 #include "puppetri/scene/perform.h"
+#include "puppetri/verdict/explain.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -51,6 +52,15 @@ void say_notes(const Diagnostics& notes) {
         if (count > kShown) {
             say("  and " + std::to_string(count - kShown) + " more of this kind [" + code +
                 "]; --json has them");
+        }
+    }
+}
+
+// Each firing of a witness, with what begins by it.
+void tell_story(const std::string& path, const scene::Scene& scene) {
+    if (const auto witness = load_witness(path, scene); witness) {
+        for (const std::string& line : verdict::story(scene.net, *witness)) {
+            say(line);
         }
     }
 }
@@ -122,6 +132,9 @@ int run(const Arguments& arguments) {
     } else if (arguments.given("--hash")) {
         std::puts(hash_text_of(result.log_hash).c_str());
     } else {
+        if (arguments.given("--witness")) {
+            tell_story(arguments.text("--witness"), *scene);
+        }
         say(run_summary(*scene, result));
     }
     return good && !result.fault && !result.interrupted ? kFine : kFailed;
@@ -149,7 +162,8 @@ Command run_command() {
         "  puppetri run ball.pup --for 20s --seed 3        also 480f (frames), 500x (firings)\n"
         "  puppetri run ball.pup --log log.csv --score -   - is stdout\n"
         "  puppetri run show.pup --events - --record session.txt\n"
-        "  puppetri run show.pup --events session.txt --hash",
+        "  puppetri run show.pup --events session.txt --hash\n"
+        "  puppetri run duet.pup --witness out/everybody.witness.json",
         {{"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
          {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
          {"--for", Value::kText, "HOW LONG",
@@ -160,6 +174,8 @@ Command run_command() {
           "outside events from a list or a recorded session; - for stdin", false},
          {"--record", Value::kText, "FILE",
           "write the outside events of this session, to be replayed", false},
+         {"--witness", Value::kText, "FILE",
+          "play the run of a witness that `puppetri prove` has written, step by step", false},
          {"--hash", Value::kFlag, "", "print the fingerprint of the log alone", false},
          {"--json", Value::kFlag, "", "the summary as JSON on stdout", false}},
         run};

@@ -16,6 +16,7 @@
 #include "puppetri/net/tables.h"
 #include "puppetri/proof/components.h"
 #include "puppetri/proof/slice.h"
+#include "puppetri/verdict/sample.h"
 #include "temporal_rule.h"
 
 namespace puppetri::verdict {
@@ -435,8 +436,31 @@ class Prover {
         }
         for (const std::uint32_t i : open) {
             if (!works_[i].done) {
+                by_sampling(works_[i]);
                 finish(works_[i]);
             }
+        }
+    }
+
+    void by_sampling(Work& w) {
+        if (options_.samples == 0 || w.asked.question != Question::kRule || cancelled()) {
+            return;
+        }
+        const Watched watch = watched(w.asked);
+        SampleOptions o;
+        o.runs = options_.samples;
+        o.seconds = std::max(1.0, left());
+        Sampled result = sample(theatre_, watch.obligation, *watch.reader, o);
+        if (result.witness) {
+            w.verdict.answer = Answer::kRefuted;
+            w.verdict.method = "sampling";
+            w.verdict.reason = "a sampled run breaks it";
+            result.witness->says = w.verdict.reason;
+            w.verdict.witness = std::move(result.witness);
+        } else if (result.sample) {
+            w.verdict.answer = Answer::kSampled;
+            w.verdict.method = "sampling";
+            w.verdict.sample = result.sample;
         }
     }
 
@@ -688,9 +712,19 @@ class Prover {
                         .fault_counts = fault_of(w.asked.question)};
         Caught caught = pursue(theatre_, hunt, limits());
         if (!caught.witness) {
-            if (decides) {
-                w.verdict.reason = f.reason + ", but no run was found that does it (" +
-                                   caught.reason + ")";
+            if (!decides) {
+                return;
+            }
+            w.verdict.reason =
+                f.reason + ", but no run was found that does it (" + caught.reason + ")";
+            if (draws_times()) {
+                PursueLimits any = limits();
+                any.coincide = true;
+                if (pursue(theatre_, hunt, any).witness) {
+                    w.verdict.reason = "only an exact coincidence of drawn times, which has "
+                                       "probability 0, was found to break it: " +
+                                       f.reason;
+                }
             }
             return;
         }
@@ -703,6 +737,17 @@ class Prover {
                               w.asked.rule.kind == net::RuleKind::kPossible;
         w.verdict.answer = possible ? Answer::kProved : Answer::kRefuted;
         w.verdict.reason = possible ? "" : f.reason;
+    }
+
+    // From distributions; intervals are all looked at.
+    bool draws_times() const {
+        const net::NetTables& tables = net_.tables();
+        const auto drawn = [](const net::DurationTable& d) {
+            return d.kind == net::DurationKind::kDistribution;
+        };
+        return std::any_of(tables.durations.begin(), tables.durations.end(), drawn) ||
+               std::any_of(tables.delays.begin(), tables.delays.end(),
+                           [&](const net::DelayTable& d) { return drawn(d.duration); });
     }
 
     // A run for each transition.

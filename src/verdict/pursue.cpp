@@ -12,6 +12,7 @@
 #include "puppetri/net/state.h"
 #include "puppetri/net/tables.h"
 #include "puppetri/stage/stage.h"
+#include "run_hosts.h"
 
 namespace puppetri::verdict {
 namespace {
@@ -23,25 +24,6 @@ double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
-
-// Movements that nobody performs: as short as they are allowed to be.
-class ShortestHost final : public net::MovementHost {
- public:
-    explicit ShortestHost(const std::vector<proof::TickRange>& actions) : actions_(actions) {}
-    SimTime begin(net::ActionIndex action, net::ActivityIndex, SimTime, SimTime duration,
-                  std::span<const std::int64_t>) override {
-        if (duration.ticks >= 0) {
-            return duration;
-        }
-        return {action.value < actions_.size() ? actions_[action.value].low : 0};
-    }
-    std::span<const net::RaisedEvent> raised(net::ActivityIndex) override { return {}; }
-    void cut(net::ActivityIndex, SimTime) override {}
-    void left(net::ActivityIndex, SimTime) override {}
-
- private:
-    const std::vector<proof::TickRange>& actions_;
-};
 
 // Where the run may be in the graph.
 class Track {
@@ -178,8 +160,8 @@ struct Decision {
 // Takes what leads nearest, or, on a later attempt, what was decided to be tried instead.
 class GuidedChooser final : public net::Chooser {
  public:
-    GuidedChooser(std::vector<Decision>& decisions, bool longest)
-        : decisions_(decisions), longest_(longest) {}
+    GuidedChooser(std::vector<Decision>& decisions, bool longest, bool coincide)
+        : decisions_(decisions), longest_(longest), coincide_(coincide) {}
     const Track* track = nullptr;
     std::vector<std::int64_t> answers;
 
@@ -207,7 +189,22 @@ class GuidedChooser final : public net::Chooser {
             const std::int64_t drawn =
                 std::clamp(choice.drawn.ticks, choice.low.ticks, choice.high.ticks);
             d.answers = {choice.low.ticks, choice.high.ticks, drawn};
-            if (choice.high == SimTime::never()) {
+            const bool continuous = choice.kind == net::ChoiceKind::kDuration ||
+                                    choice.kind == net::ChoiceKind::kDelay;
+            if (continuous && !coincide_ && choice.low != choice.high) {
+                // Never the same twice, nor an end of the support.
+                const auto aside = static_cast<std::int64_t>(7919 * (at_ + 1));
+                const std::int64_t high = choice.high.ticks;
+                d.answers = {drawn};
+                if (high - choice.low.ticks > 2 * aside) {
+                    d.answers.push_back(choice.low.ticks + aside);
+                    const std::int64_t late = std::min(high, drawn < high / 4 ? drawn * 4 : high);
+                    d.answers.push_back(late - aside);
+                }
+                for (std::int64_t& a : d.answers) {
+                    a = std::clamp(a, choice.low.ticks, high);
+                }
+            } else if (choice.high == SimTime::never()) {
                 d.answers = {drawn, choice.low.ticks};
             } else if (longest_) {
                 std::swap(d.answers[0], d.answers[1]);
@@ -236,37 +233,8 @@ class GuidedChooser final : public net::Chooser {
     }
 
     std::vector<Decision>& decisions_;
-    const bool longest_;
+    const bool longest_, coincide_;
     std::size_t at_ = 0;
-};
-
-class Listener final : public run::LogSink {
- public:
-    void fired(SimTime, net::TransitionIndex) override {}
-    void occurs(SimTime, net::EventIndex e) override { occurred.push_back(e.value); }
-    std::vector<std::uint32_t> occurred;
-};
-
-// A player with whoever performs.
-struct Actors {
-    Actors(const Theatre& theatre, net::Chooser& chooser) : shortest(theatre.actions) {
-        run::Options options;
-        options.seed = theatre.seed;
-        options.beat = theatre.beat;
-        options.chooser = &chooser;
-        options.sink = &listener;
-        options.record = true;
-        options.host = &shortest;
-        if (theatre.scene != nullptr) {
-            stage.emplace(theatre.scene->play);
-            options.host = &*stage;
-        }
-        player.emplace(*theatre.net, options);
-    }
-    Listener listener;
-    ShortestHost shortest;
-    std::optional<stage::Stage> stage;
-    std::optional<run::Player> player;
 };
 
 std::vector<std::uint8_t> state_of(const net::Net& net, const run::Player& player) {
@@ -486,7 +454,7 @@ class Attempt {
 
     const Theatre& theatre_;
     const Hunt& hunt_;
-    Actors actors_;
+    Performers actors_;
     run::Player& player_;
     RunWatch watch_;
     Track* track_;
@@ -537,7 +505,7 @@ Caught pursue(const Theatre& theatre, const Hunt& hunt, const PursueLimits& limi
     }
     std::vector<Decision> decisions;
     for (std::uint32_t run = 0; run < limits.runs; ++run) {
-        GuidedChooser chooser(decisions, f.target == Target::kTooLong);
+        GuidedChooser chooser(decisions, f.target == Target::kTooLong, limits.coincide);
         Track track(hunt, distance);
         chooser.track = &track;
         Attempt attempt(theatre, hunt, chooser, &track);
@@ -625,7 +593,7 @@ std::optional<Witness> witness_of(const Theatre& theatre, const proof::Script& s
         w.steps.push_back({f.at, std::string(theatre.net->transition(f.transition).path)});
     }
     net::ScriptedChooser chooser(w.choices);
-    Actors actors(theatre, chooser);
+    Performers actors(theatre, chooser);
     actors.player->schedule(events);
     for (const proof::Script::Firing& f : script.firings) {
         const run::Stop stop = actors.player->step();

@@ -4,6 +4,7 @@
 // looked for, as the graph sees it. What it finds is played again, from its script alone, and
 // counts only if the rule is broken again.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -35,6 +36,9 @@ struct PursueLimits {
     std::uint32_t runs = 40;         // attempts
     std::uint64_t firings = 20'000;  // per attempt
     double seconds = 10;
+    // Times that are drawn from distributions may coincide exactly, which has probability 0: what
+    // is found so refutes nothing.
+    bool coincide = false;
     const std::atomic<bool>* cancelled = nullptr;
 };
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// The run of a witness, firing by firing, with the stage.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "puppetri/net/chooser.h"
+#include "puppetri/proof/plain_net.h"
+#include "puppetri/run/player.h"
+#include "puppetri/scene/scene.h"
+#include "puppetri/stage/stage.h"
+#include "puppetri/verdict/witness.h"
+
+namespace puppetri::verdict {
+
+class ScriptPlayer {
+ public:
+    ScriptPlayer(const scene::Scene& scene, const Witness& witness);
+    ScriptPlayer(const ScriptPlayer&) = delete;
+    ScriptPlayer& operator=(const ScriptPlayer&) = delete;
+    // The next firing of the witness; false: it is over.
+    bool step();
+    const run::Player& player() const { return player_; }
+
+ private:
+    const Witness& witness_;
+    stage::Stage stage_;
+    net::ScriptedChooser chooser_;
+    run::Player player_;
+};
+
+// The greatest siphon among the empty places: a set of places that can never get a token again
+// (ordinary nets).
+std::vector<std::uint32_t> empty_siphon(const proof::PlainNet& net,
+                                        const proof::Marking& marking);
+
+}  // namespace puppetri::verdict
