@@ -4,6 +4,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "builtin_rules.h"
@@ -34,7 +35,7 @@ class Structure {
     const net::Net& net_;
     proof::Plain plain_;
     std::vector<std::uint8_t> emptied_;
-    std::vector<std::string> names_;
+    std::vector<std::string_view> names_;
     std::optional<bool> live_;
     std::string theorem_;
 };

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// The examples: what is right is proved, the seeded bugs are refuted where SCENES says they are.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+
+#include "puppetri/run/player.h"
+#include "puppetri/verdict/explain.h"
+#include "puppetri/verdict/prove.h"
+
+namespace puppetri::verdict {
+namespace {
+
+class Disk final : public scene::FileSource {
+ public:
+    Result<std::string, scene::FileProblem> read(const std::string& path) override {
+        std::ifstream file(path, std::ios::binary);
+        if (!file) {
+            return Unexpected(scene::FileProblem{"there is no such file"});
+        }
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    }
+};
+
+struct Example {
+    explicit Example(const std::string& name) {
+        auto loaded = scene::load(files, std::string(PUP_SOURCE_DIR "/examples/") + name);
+        REQUIRE_MESSAGE(loaded.has_value(), name);
+        scene.emplace(std::move(*loaded));
+        ProveOptions options;
+        options.budget.seconds = 20;
+        verdicts = prove(*scene, options);
+    }
+    const Verdict& of(const std::string& rule) const {
+        const auto found = std::find_if(verdicts.begin(), verdicts.end(),
+                                        [&](const Verdict& v) { return v.rule == rule; });
+        REQUIRE_MESSAGE(found != verdicts.end(), rule);
+        return *found;
+    }
+    Disk files;
+    std::optional<scene::Scene> scene;
+    std::vector<Verdict> verdicts;
+};
+
+// The places that are marked after the last firing of a witness.
+std::vector<std::string> marked_at_end(const scene::Scene& scene, const Witness& w) {
+    stage::Stage stage(scene.play);
+    net::ScriptedChooser chooser(w.choices);
+    run::Player player(scene.net, {.seed = w.seed, .host = &stage, .chooser = &chooser});
+    while (player.firings() < w.steps.size() && player.step() == run::Stop::kNone) {
+    }
+    std::vector<std::string> out;
+    for (std::uint32_t p = 0; p < scene.net.place_count(); ++p) {
+        if (player.tokens(net::PlaceIndex{p}) > 0) {
+            out.emplace_back(scene.net.place(net::PlaceIndex{p}).path);
+        }
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+TEST_CASE("every rule of the walk and of the ball game is proved [agree]") {
+    for (const char* name : {"02_walk/twice.pup", "02_walk/figure.pup", "02_walk/limbs.pup",
+                             "03_ball/ball.pup", "03_ball/figure5.pup"}) {
+        const Example e(name);
+        for (const Verdict& v : e.verdicts) {
+            CHECK_MESSAGE(v.answer == Answer::kProved,
+                          name << ": " << v.rule << " " << name_of(v) << " " << v.reason);
+        }
+    }
+}
+
+TEST_CASE("throwing without looking is refuted: P9 fills up [agree]") {
+    const Example e("03_ball/impatient.pup");
+    for (const char* rule : {"ready_a", "bounds"}) {
+        CHECK_MESSAGE(e.of(rule).answer == Answer::kRefuted, rule << " " << e.of(rule).reason);
+        CHECK(e.of(rule).witness.has_value());
+    }
+}
+
+TEST_CASE("two balls end dead with both about to throw [agree]") {
+    const Example e("03_ball/two_balls.pup");
+    REQUIRE(e.of("goes_on").answer == Answer::kRefuted);
+    CHECK(marked_at_end(*e.scene, *e.of("goes_on").witness) ==
+          std::vector<std::string>{"a.to_throw", "b.to_throw"});
+}
+
+TEST_CASE("without a ball both are ready to grasp, for ever [agree]") {
+    const Example e("03_ball/no_ball.pup");
+    REQUIRE(e.of("goes_on").answer == Answer::kRefuted);
+    CHECK(marked_at_end(*e.scene, *e.of("goes_on").witness) ==
+          std::vector<std::string>{"a.can_grasp", "a.to_get", "b.can_grasp", "b.to_get"});
+}
+
+TEST_CASE("the duet goes on while two are frozen; explained, repaired, proved [agree]") {
+    const Example e("05_duet/duet.pup");
+    CHECK(e.of("goes_on").answer == Answer::kProved);
+    const Verdict& frozen = e.of("everybody");
+    REQUIRE_MESSAGE(frozen.answer == Answer::kRefuted, frozen.reason);
+    REQUIRE(frozen.witness.has_value());
+    const Explanation why = explain(*e.scene, frozen);
+    REQUIRE(why.waits.size() == 2);
+    CHECK(why.waits[0].missing.find("fan_lies") == 0);
+    CHECK(why.waits[0].taken_by.find("rui_takes") == 0);
+    CHECK(why.waits[1].missing.find("rose_lies") == 0);
+    CHECK(why.waits[1].taken_by.find("ana_takes") == 0);
+    Disk files;
+    const RepairAnswer answer = repair(files, *e.scene, e.verdicts, "everybody", {});
+    REQUIRE_MESSAGE(answer.repair.has_value(), answer.reason);
+    for (const Verdict& v : answer.repair->proved) {
+        CHECK_MESSAGE(v.answer == Answer::kProved, v.rule << " " << v.reason);
+    }
+    const Example repaired("05_duet/repaired.pup");
+    for (const Verdict& v : repaired.verdicts) {
+        CHECK_MESSAGE(v.answer == Answer::kProved, v.rule << " " << v.reason);
+    }
+}
+
+}  // namespace
+}  // namespace puppetri::verdict
