@@ -14,7 +14,7 @@ namespace {
 
 using Edges = std::vector<std::vector<Buechi::Edge>>;
 
-Components components_of(const Edges& edges) {
+StrongComponents components_of(const Edges& edges) {
     Graph graph;
     for (const auto& row : edges) {
         for (const Buechi::Edge& e : row) {
@@ -28,7 +28,7 @@ Components components_of(const Edges& edges) {
 // Marks outside of accepting components are taken away; edges to states from which no accepting
 // component is reached too.
 void prune(Edges& edges, std::uint64_t all) {
-    const Components components = components_of(edges);
+    const StrongComponents components = components_of(edges);
     std::vector<std::uint64_t> marks(components.count, 0);
     std::vector<std::uint8_t> cyclic(components.count, 0), useful(components.count, 0);
     for (std::uint32_t q = 0; q < edges.size(); ++q) {

@@ -148,13 +148,13 @@ net::Rows<std::uint32_t> predecessors(const Graph& graph) {
     return rows;
 }
 
-Components strong_components(const Graph& graph, const StateBits* within) {
+StrongComponents strong_components(const Graph& graph, const StateBits* within) {
     struct Frame {
         std::uint32_t state, edge, low;
     };
     const std::uint32_t size = graph.size();
-    Components result;
-    result.of.assign(size, Components::kNone);
+    StrongComponents result;
+    result.of.assign(size, StrongComponents::kNone);
     std::vector<std::uint32_t> index(size, 0), open;  // 0: not seen
     std::vector<Frame> frames;
     std::uint32_t next = 0;
@@ -177,7 +177,7 @@ Components strong_components(const Graph& graph, const StateBits* within) {
                 }
                 if (index[to] == 0) {
                     enter(to);
-                } else if (result.of[to] == Components::kNone) {
+                } else if (result.of[to] == StrongComponents::kNone) {
                     frame.low = std::min(frame.low, index[to]);
                 }
                 continue;
@@ -201,10 +201,10 @@ Components strong_components(const Graph& graph, const StateBits* within) {
     return result;
 }
 
-StateBits bottom_components(const Graph& graph, const Components& components) {
+StateBits bottom_components(const Graph& graph, const StrongComponents& components) {
     StateBits bottoms(components.count, true);
     for (std::uint32_t s = 0; s < graph.size(); ++s) {
-        if (components.of[s] == Components::kNone) {
+        if (components.of[s] == StrongComponents::kNone) {
             continue;
         }
         for (const Edge& e : graph.edges.row(s)) {
@@ -216,10 +216,10 @@ StateBits bottom_components(const Graph& graph, const Components& components) {
     return bottoms;
 }
 
-StateBits cyclic_components(const Graph& graph, const Components& components) {
+StateBits cyclic_components(const Graph& graph, const StrongComponents& components) {
     StateBits cyclic(components.count);
     for (std::uint32_t s = 0; s < graph.size(); ++s) {
-        if (components.of[s] == Components::kNone) {
+        if (components.of[s] == StrongComponents::kNone) {
             continue;
         }
         for (const Edge& e : graph.edges.row(s)) {
@@ -300,7 +300,7 @@ std::optional<Lasso> lasso_within(const Graph& graph, std::uint32_t from, const 
     if (!within[from]) {
         return std::nullopt;
     }
-    const Components components = strong_components(graph, &within);
+    const StrongComponents components = strong_components(graph, &within);
     const StateBits cyclic = cyclic_components(graph, components);
     StateBits goal(graph.size());
     within.for_each([&](std::uint32_t s) {

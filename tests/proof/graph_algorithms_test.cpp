@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Components, paths and lassos against the transitive closure of small random graphs.
+// StrongComponents, paths and lassos against the transitive closure of small random graphs.
 #include "puppetri/proof/graph_algorithms.h"
 
 #include "proof/random_graph.h"
@@ -50,10 +50,10 @@ TEST_CASE("components are the classes of mutual reachability, bottoms first [ora
         const Graph g = random_graph(random, 1 + random.below(12));
         const StateBits within = random_bits(random, g.size(), 5);
         const Matrix d = distances(g, within);
-        const Components c = strong_components(g, &within);
+        const StrongComponents c = strong_components(g, &within);
         const StateBits cyclic = cyclic_components(g, c), bottom = bottom_components(g, c);
         for (std::uint32_t s = 0; s < g.size(); ++s) {
-            REQUIRE((c.of[s] == Components::kNone) == !within[s]);
+            REQUIRE((c.of[s] == StrongComponents::kNone) == !within[s]);
             if (!within[s]) {
                 continue;
             }

@@ -52,7 +52,7 @@ bool may_end(const Graph& graph, std::uint32_t state);
 // Row s: the sources of the edges into s. Cost: 4 bytes per edge and state.
 net::Rows<std::uint32_t> predecessors(const Graph& graph);
 
-struct Components {
+struct StrongComponents {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};  // a state that was left out
     // Per state its component. An edge never leads to a greater number: bottoms come early, and
     // going through states by descending components is a topological order.
@@ -61,12 +61,12 @@ struct Components {
 };
 // Of the part of the graph that lies in `within` (null: all), also of what is not reachable.
 // Source  R. Tarjan, Depth-first search and linear graph algorithms (1972); iterative.
-Components strong_components(const Graph& graph, const StateBits* within = nullptr);
-// Components that no edge of the graph leaves. One bit per component.
-StateBits bottom_components(const Graph& graph, const Components& components);
-// Components that have an edge inside: a path may stay in them for ever. Edges into states that
+StrongComponents strong_components(const Graph& graph, const StateBits* within = nullptr);
+// StrongComponents that no edge of the graph leaves. One bit per component.
+StateBits bottom_components(const Graph& graph, const StrongComponents& components);
+// StrongComponents that have an edge inside: a path may stay in them for ever. Edges into states that
 // were left out do not count. One bit per component.
-StateBits cyclic_components(const Graph& graph, const Components& components);
+StateBits cyclic_components(const Graph& graph, const StrongComponents& components);
 
 // All states that paths through `within` (null: all) lead to, from members of `from` that lie in
 // it.
