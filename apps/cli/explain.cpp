@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `puppetri explain SCENE RULE`: why a rule fails, in words, and what would mend it.
+#include "puppetri/verdict/explain.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <string>
@@ -10,7 +12,6 @@
 #include "puppetri/io/disk_files.h"
 #include "puppetri/io/json_writer.h"
 #include "puppetri/io/witness_file.h"
-#include "puppetri/verdict/explain.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -31,8 +32,8 @@ void print_lines(const std::vector<std::string>& lines) {
 }
 
 void print(const Verdict& v, const verdict::Explanation& e) {
-    std::printf("%s%s%s%s\n%s\n", v.rule.c_str(), v.caption.empty() ? "" : " \"",
-                v.caption.c_str(), v.caption.empty() ? "" : "\"", e.what.c_str());
+    std::printf("%s%s%s%s\n%s\n", v.rule.c_str(), v.caption.empty() ? "" : " \"", v.caption.c_str(),
+                v.caption.empty() ? "" : "\"", e.what.c_str());
     for (const std::string& note : v.notes) {
         std::printf("%s\n", note.c_str());
     }
@@ -171,8 +172,7 @@ int explain(const Arguments& arguments) {
 
 Command explain_command() {
     return {
-        "explain",
-        "why a rule fails, in words, and what would mend it",
+        "explain", "why a rule fails, in words, and what would mend it",
         "Tells the story of the run that refutes the rule: who waits for what at its end, which "
         "token is missing, which\n"
         "transition took it. Where theory gives a repair (a place that keeps a bound, or keeps a "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What commands that perform a scene share: the options --seed, --for, --events and --witness, and the way
-// from a file to a finished performance with progress on the terminal.
+// What commands that perform a scene share: the options --seed, --for, --events and --witness, and
+// the way from a file to a finished performance with progress on the terminal.
 #pragma once
 #include <cstdint>
 #include <memory>

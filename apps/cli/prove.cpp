@@ -40,8 +40,7 @@ std::string size_of(const Verdict& v) {
     return v.states == 0 ? "" : std::to_string(v.states) + " states";
 }
 
-void print_table(const std::vector<Verdict>& verdicts,
-                 const std::vector<std::string>& witnesses) {
+void print_table(const std::vector<Verdict>& verdicts, const std::vector<std::string>& witnesses) {
     std::size_t names = 4, rules = 4, methods = 6, sizes = 4;
     for (const Verdict& v : verdicts) {
         names = std::max(names, verdict::name_of(v).size());
@@ -104,8 +103,8 @@ const char* word_of(Answer answer) {
     }
 }
 
-std::string json_of(const std::vector<Verdict>& verdicts,
-                    const std::vector<std::string>& witnesses, int status) {
+std::string json_of(const std::vector<Verdict>& verdicts, const std::vector<std::string>& witnesses,
+                    int status) {
     io::JsonWriter json;
     json.begin_object().member("exit", status).key("rules").begin_array();
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
@@ -206,8 +205,7 @@ int prove(const Arguments& arguments) {
 
 Command prove_command() {
     return {
-        "prove",
-        "prove the rules of a scene or a net",
+        "prove", "prove the rules of a scene or a net",
         "Proves each rule of the scene, and those that every scene has to keep (builtin.*), for "
         "all ways the net can go,\n"
         "or refutes it by a run that you can watch; otherwise the answer is UNKNOWN, with the "
@@ -224,8 +222,8 @@ Command prove_command() {
             {{"scene", Value::kText, "SCENE", "a scene (.pup) or a net (.pnml, .xml, .net)", true},
              {"--rule", Value::kText, "NAME", "this rule only (of a loop: all its instances)",
               false},
-             {"--samples", Value::kInteger, "N",
-              "sample so many runs where nothing else answers", false},
+             {"--samples", Value::kInteger, "N", "sample so many runs where nothing else answers",
+              false},
              {"--accept-sampled", Value::kFlag, "", "let SAMPLED count as proved", false},
              {"--json", Value::kFlag, "", "the verdicts as JSON on stdout", false}}),
         prove};

@@ -17,8 +17,8 @@ std::vector<Option> with_proving_options(std::vector<Option> options) {
     options.push_back({"--time", Value::kText, "T",
                        "give up after so long, with what is known then (60s, 5min; default 60s)",
                        false});
-    options.push_back({"--memory", Value::kText, "M",
-                       "hold at most so much (500M, 2G; default 4G)", false});
+    options.push_back(
+        {"--memory", Value::kText, "M", "hold at most so much (500M, 2G; default 4G)", false});
     options.push_back({"--threads", Value::kInteger, "N",
                        "explore on so many cores where a method can; the verdicts are the same",
                        false});
@@ -173,8 +173,7 @@ std::string short_number(double x) {
 
 }  // namespace
 
-ProvingProgress::ProvingProgress(verdict::ProveOptions& options)
-    : data_(std::make_unique<Data>()) {
+ProvingProgress::ProvingProgress(verdict::ProveOptions& options) : data_(std::make_unique<Data>()) {
     options.budget.cancelled = &data_->cancelled;
     options.budget.context = data_.get();
     options.budget.progress = [](void* context, const proof::Progress& p) {
@@ -188,8 +187,7 @@ ProvingProgress::ProvingProgress(verdict::ProveOptions& options)
         const double rate = p.seconds > 0 ? static_cast<double>(p.states) / p.seconds : 0;
         std::fprintf(stderr, "\r\033[K%s: %s states, %s edges, %s/s, %sB, %s waiting", p.method,
                      short_number(static_cast<double>(p.states)).c_str(),
-                     short_number(static_cast<double>(p.edges)).c_str(),
-                     short_number(rate).c_str(),
+                     short_number(static_cast<double>(p.edges)).c_str(), short_number(rate).c_str(),
                      short_number(static_cast<double>(p.bytes)).c_str(),
                      short_number(static_cast<double>(p.waiting)).c_str());
         std::fflush(stderr);

@@ -3,9 +3,8 @@
 
 #include <charconv>
 #include <limits>
-#include <optional>
-
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "puppetri/io/json_writer.h"
 

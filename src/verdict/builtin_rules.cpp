@@ -61,11 +61,11 @@ Asked asked(const char* path, const char* caption, Question question) {
 // Places whose tokens name a member of the cast; each is named once at the start.
 void add_identities(const net::Net& net, const net::NetDraft& draft, std::vector<Asked>& out) {
     for (const ValueKind kind : {ValueKind::kActor, ValueKind::kProp}) {
-        Asked a = asked(kind == ValueKind::kActor ? "builtin.one_of_each_actor"
-                                                  : "builtin.one_of_each_prop",
-                        kind == ValueKind::kActor ? "each actor's token is in exactly one place"
-                                                  : "each prop's token is in exactly one place",
-                        Question::kOneOfEach);
+        Asked a = asked(
+            kind == ValueKind::kActor ? "builtin.one_of_each_actor" : "builtin.one_of_each_prop",
+            kind == ValueKind::kActor ? "each actor's token is in exactly one place"
+                                      : "each prop's token is in exactly one place",
+            Question::kOneOfEach);
         std::vector<Value> named;
         bool clear = true;
         for (std::uint32_t p = 0; p < draft.places.size(); ++p) {
@@ -103,8 +103,8 @@ std::vector<Asked> built_in_rules(const net::Net& net, const net::NetDraft& draf
                                   const stage::Play* play) {
     std::vector<Asked> out;
     const net::NetTables& tables = net.tables();
-    out.push_back(asked("builtin.time_goes_on", "no instant lasts for ever",
-                        Question::kTimeGoesOn));
+    out.push_back(
+        asked("builtin.time_goes_on", "no instant lasts for ever", Question::kTimeGoesOn));
     if (!tables.refinements.empty()) {
         out.push_back(asked("builtin.modules_end_clean", "nothing is left in a module that ends",
                             Question::kModulesEndClean));
@@ -112,12 +112,12 @@ std::vector<Asked> built_in_rules(const net::Net& net, const net::NetDraft& draf
     const std::vector<net::DatumDraft>& data = net.declarations().data;
     if (std::any_of(data.begin(), data.end(),
                     [](const net::DatumDraft& d) { return d.low || d.high; })) {
-        out.push_back(asked("builtin.data_in_range", "no datum leaves its range",
-                            Question::kDataInRange));
+        out.push_back(
+            asked("builtin.data_in_range", "no datum leaves its range", Question::kDataInRange));
     }
     if (!tables.specials.empty()) {
-        out.push_back(asked("builtin.nothing_stops", "no run stops with a fault",
-                            Question::kNothingStops));
+        out.push_back(
+            asked("builtin.nothing_stops", "no run stops with a fault", Question::kNothingStops));
     }
     add_identities(net, draft, out);
     if (play == nullptr) {
@@ -156,8 +156,7 @@ bool concerns(Question question, const std::string& code) {
         case Question::kDataInRange:
             return code == "range-left";
         case Question::kNothingStops:
-            return code != "endless-instant" && code != "module-not-clean" &&
-                   code != "range-left";
+            return code != "endless-instant" && code != "module-not-clean" && code != "range-left";
         default:
             return false;
     }

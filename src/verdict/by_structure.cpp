@@ -101,8 +101,7 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
             if (asked.rule.count != net::Rule::kNoCount) {
                 return by_invariants(asked.rule, host, budget);
             }
-            if (proof::boundedness(plain_.net, budget).kind ==
-                proof::BoundednessAnswer::kBounded) {
+            if (proof::boundedness(plain_.net, budget).kind == proof::BoundednessAnswer::kBounded) {
                 return StructuralProof{.method = "bounded without time"};
             }
             return std::nullopt;
@@ -111,10 +110,9 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
             return by_theorem(budget);
         case RuleKind::kNobodyFreezes:
             // Who has no movements cannot move: the theorem speaks of transitions.
-            if (std::any_of(asked.rule.operands.begin(), asked.rule.operands.end(),
-                            [](const Formula& f) {
-                                return f.nodes.back().op == FormulaOp::kConstant;
-                            })) {
+            if (std::any_of(
+                    asked.rule.operands.begin(), asked.rule.operands.end(),
+                    [](const Formula& f) { return f.nodes.back().op == FormulaOp::kConstant; })) {
                 return std::nullopt;
             }
             return by_theorem(budget);

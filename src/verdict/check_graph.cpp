@@ -61,10 +61,9 @@ class Checker {
 
     Finding cut_short() const {
         if (!graph_.over) {
-            return unknown(view_.timed->not_over.empty()
-                               ? "the method does not see every run"
-                               : "the method does not see every run: " +
-                                     view_.timed->not_over.front());
+            return unknown(view_.timed->not_over.empty() ? "the method does not see every run"
+                                                         : "the method does not see every run: " +
+                                                               view_.timed->not_over.front());
         }
         if (graph_.ended != proof::Ended::kDone) {
             return unknown(std::string("not all states were looked at: ") +
@@ -120,8 +119,7 @@ class Checker {
     }
     void tell_vacuity(Finding& f) const {
         const bool conditional = o_.kind == RuleKind::kOnlyIf || o_.kind == RuleKind::kUntil ||
-                                 o_.kind == RuleKind::kLeadsTo ||
-                                 o_.kind == RuleKind::kTakesAtMost;
+                                 o_.kind == RuleKind::kLeadsTo || o_.kind == RuleKind::kTakesAtMost;
         if (conditional && !ever(o_.operands[0])) {
             f.notes.push_back("vacuous: what the rule begins with never happens");
         }
@@ -175,7 +173,22 @@ class Checker {
         if (graph_.over && graph_.ended == proof::Ended::kDone) {
             return holds();
         }
-        return cut_short();
+        Finding f = cut_short();
+        // Who grew most, where the search was then.
+        std::uint32_t most = 0, where = 0;
+        for (std::uint32_t p = 0; graph_.size() > 0 && p < net_.place_count(); ++p) {
+            const std::uint32_t n =
+                view_.timed->tokens(graph_.size() - 1, net::PlaceIndex{p}).total;
+            if (n > most) {
+                most = n;
+                where = p;
+            }
+        }
+        if (most > 0) {
+            f.reason += "; place " + std::string(net_.place(net::PlaceIndex{where}).path) +
+                        " has " + std::to_string(most) + " tokens there and may grow for ever";
+        }
+        return f;
     }
 
     Nodes owing(const Product& p, const Monitor& monitor) const {
@@ -202,14 +215,14 @@ class Checker {
         return nodes;
     }
     bool has_outside_edges() const {
-        return std::any_of(graph_.edges.items.begin(), graph_.edges.items.end(),
-                           [](const proof::Edge& e) {
-                               return e.label != proof::Edge::kPass &&
-                                      (e.label & proof::Edge::kEvent) != 0;
-                           });
+        return std::any_of(
+            graph_.edges.items.begin(), graph_.edges.items.end(), [](const proof::Edge& e) {
+                return e.label != proof::Edge::kPass && (e.label & proof::Edge::kEvent) != 0;
+            });
     }
 
-    // Every path leaves `open`, wherever it does not rest; or those that do not are unlucky for ever.
+    // Every path leaves `open`, wherever it does not rest; or those that do not are unlucky for
+    // ever.
     Finding leaves(Product p, const Nodes& open, const char* owed) {
         if (auto cycle = endless(p, open, {}, &view_.timed->waits)) {
             // Ties alone decide on graphs of single states without the outside: where the way out
@@ -339,8 +352,9 @@ class Checker {
         if (!rests && !endless(p, open, must_edges, &view_.timed->waits)) {
             return holds(Force::kEveryChoice);
         }
-        return unknown(what + " stays within reach as far as this method sees, but may be "
-                              "avoided for ever; only an exact method can say more");
+        return unknown(what +
+                       " stays within reach as far as this method sees, but may be "
+                       "avoided for ever; only an exact method can say more");
     }
 
     Finding live() {
@@ -426,8 +440,7 @@ class Checker {
             for (std::uint32_t n = 0; n < p.size(); ++n) {
                 ends[n] = p.rests(n) && p.final_marking(n) ? 1 : 0;
             }
-            Finding f = stays_possible(Product(p), may, must, ends, ends,
-                                       "a movement of " + who);
+            Finding f = stays_possible(Product(p), may, must, ends, ends, "a movement of " + who);
             if (f.kind != Kind::kHolds) {
                 f.subject = who;
                 return f;

@@ -90,9 +90,9 @@ Formula with_values(const Formula& f, const std::map<std::uint32_t, bool>& value
                 built.push_back(combine(FormulaOp::kOr, negation(built[n.a]), built[n.b]));
                 break;
             case FormulaOp::kIff:
-                built.push_back(combine(
-                    FormulaOp::kOr, combine(FormulaOp::kAnd, built[n.a], built[n.b]),
-                    combine(FormulaOp::kAnd, negation(built[n.a]), negation(built[n.b]))));
+                built.push_back(
+                    combine(FormulaOp::kOr, combine(FormulaOp::kAnd, built[n.a], built[n.b]),
+                            combine(FormulaOp::kAnd, negation(built[n.a]), negation(built[n.b]))));
                 break;
             default: {
                 Formula leaf;
@@ -123,7 +123,7 @@ Swings swings_of(const BoundCall& call, bool calm) {
     if (m == "step" || m == "half_step") {
         const motion::ArgumentValue* side = call.find("side");
         const motion::Side* which = side != nullptr ? std::get_if<motion::Side>(side) : nullptr;
-        return which == nullptr                 ? Swings{true, true, false}
+        return which == nullptr                ? Swings{true, true, false}
                : *which == motion::Side::kLeft ? Swings{true, false, false}
                                                : Swings{false, true, false};
     }
@@ -240,9 +240,8 @@ Formula FigureLowering::may_swing(std::uint32_t actor, bool left, bool right) co
         }
         for (std::size_t k = 0; k < places.size(); ++k) {
             if (k != i && s.left && places[k].second.right) {
-                ways.push_back(Formula::binary(
-                    FormulaOp::kAnd, Formula::marked(place),
-                    Formula::marked(net::PlaceIndex{places[k].first})));
+                ways.push_back(Formula::binary(FormulaOp::kAnd, Formula::marked(place),
+                                               Formula::marked(net::PlaceIndex{places[k].first})));
             }
         }
     }
@@ -258,8 +257,7 @@ Formula FigureLowering::may_hold(std::uint32_t prop, const std::string& holder) 
         }
         const bool flies = a.call->subject.kind == SubjectKind::kProp;
         const std::string who =
-            flies ? "air"
-                  : play_.cast.actors[a.call->subject.actor.value].name + ".hands";
+            flies ? "air" : play_.cast.actors[a.call->subject.actor.value].name + ".hands";
         const Formula here = Formula::marked(net::PlaceIndex{a.place});
         if (who == holder) {
             own.push_back(here);
@@ -305,14 +303,15 @@ Lowered FigureLowering::lower(const Formula& formula) const {
             if (atom.kind == net::HostAtom::Kind::kHolder) {
                 for (std::uint32_t p = 0; p < play_.cast.props.size(); ++p) {
                     if (play_.cast.props[p].name == atom.subject) {
-                        feasible = combine(FormulaOp::kAnd, std::move(feasible),
-                                           may_hold(p, atom.value));
+                        feasible =
+                            combine(FormulaOp::kAnd, std::move(feasible), may_hold(p, atom.value));
                     }
                 }
                 continue;
             }
             const std::size_t dot = atom.subject.rfind('.');
-            const std::string who = atom.subject.substr(0, dot), limb = atom.subject.substr(dot + 1);
+            const std::string who = atom.subject.substr(0, dot),
+                              limb = atom.subject.substr(dot + 1);
             for (std::uint32_t a = 0; a < play_.cast.actors.size(); ++a) {
                 if (play_.cast.actors[a].name == who && atom.value == "swing") {
                     if (limb == "left_leg") {
@@ -328,8 +327,8 @@ Lowered FigureLowering::lower(const Formula& formula) const {
                                may_swing(actor, legs.first, legs.second));
         }
         const Formula here = with_values(formula, value_of);
-        out.may = combine(FormulaOp::kOr, std::move(out.may),
-                          combine(FormulaOp::kAnd, feasible, here));
+        out.may =
+            combine(FormulaOp::kOr, std::move(out.may), combine(FormulaOp::kAnd, feasible, here));
         may_not = combine(FormulaOp::kOr, std::move(may_not),
                           combine(FormulaOp::kAnd, feasible, negation(here)));
     }
@@ -339,8 +338,8 @@ Lowered FigureLowering::lower(const Formula& formula) const {
 
 std::vector<net::Rule> figure_rules(const net::Net& net, const stage::Play& play) {
     std::vector<net::Rule> rules;
-    // Sums of places per actor and limb, none of which may have two tokens; limbs with the same sums
-    // make one rule.
+    // Sums of places per actor and limb, none of which may have two tokens; limbs with the same
+    // sums make one rule.
     using Sums = std::vector<std::vector<std::uint32_t>>;
     for (std::uint32_t a = 0; a < play.cast.actors.size(); ++a) {
         std::map<Sums, std::string> of_sums;
@@ -360,8 +359,8 @@ std::vector<net::Rule> figure_rules(const net::Net& net, const stage::Play& play
                 all.push_back(p);
                 // Whoever walks, stands or turns leaves arms alone that hold something.
                 const bool holds = is_one_of(call.movement, {"carry", "hold"});
-                const bool gives_way =
-                    !motion::find_movement(call.movement, call.subject.kind)->arms_parameter.empty();
+                const bool gives_way = !motion::find_movement(call.movement, call.subject.kind)
+                                            ->arms_parameter.empty();
                 if (!holds) {
                     without_holding.push_back(p);
                 }
@@ -394,11 +393,12 @@ std::vector<net::Rule> figure_rules(const net::Net& net, const stage::Play& play
             for (const std::vector<std::uint32_t>& places : sums) {
                 Expr sum = Expr::integer(0);
                 for (std::size_t i = 0; i < places.size(); ++i) {
-                    Expr count = Expr::slot(net::slot(net::SlotKind::kCount, places[i]),
-                                            {ValueKind::kInt});
-                    sum = i == 0
-                              ? std::move(count)
-                              : Expr::binary(ExprOp::kAdd, std::move(sum), std::move(count)).value();
+                    Expr count =
+                        Expr::slot(net::slot(net::SlotKind::kCount, places[i]), {ValueKind::kInt});
+                    sum =
+                        i == 0
+                            ? std::move(count)
+                            : Expr::binary(ExprOp::kAdd, std::move(sum), std::move(count)).value();
                 }
                 twice.push_back(Formula::expression(
                     Expr::binary(ExprOp::kGreaterEqual, std::move(sum), Expr::integer(2)).value()));
@@ -417,8 +417,7 @@ std::vector<net::Rule> figure_rules(const net::Net& net, const stage::Play& play
             }
             const BoundCall& call = play.actions[action.value].call;
             if (claimed_prop(call).value == b) {
-                of_holder[call.subject.kind == SubjectKind::kProp ? kAir
-                                                                  : call.subject.actor.value]
+                of_holder[call.subject.kind == SubjectKind::kProp ? kAir : call.subject.actor.value]
                     .push_back(Formula::marked(net::PlaceIndex{p}));
             }
         }

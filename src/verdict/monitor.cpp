@@ -112,7 +112,8 @@ void Monitor::step(std::uint32_t state, const Moment& m, std::vector<std::uint32
     }
     switch (o_.kind) {
         case RuleKind::kUntil: {
-            const Truth a = o_.operands[0].at(m.now, m.label), b = o_.operands[1].at(m.now, m.label),
+            const Truth a = o_.operands[0].at(m.now, m.label),
+                        b = o_.operands[1].at(m.now, m.label),
                         c = o_.operands[2].at(m.now, m.label);
             for_each(c, [&](bool c_now) {
                 const bool armed = (state & kOwes) != 0 && !c_now;
@@ -128,7 +129,8 @@ void Monitor::step(std::uint32_t state, const Moment& m, std::vector<std::uint32
         }
         case RuleKind::kLeadsTo: {
             const bool firing = is_firing(o_.operands[0]);
-            const Truth a = o_.operands[0].at(m.now, m.label), b = o_.operands[1].at(m.now, m.label);
+            const Truth a = o_.operands[0].at(m.now, m.label),
+                        b = o_.operands[1].at(m.now, m.label);
             for_each(a, [&](bool a_now) {
                 const bool rises = a_now && (firing || (state & kHeld) == 0);
                 for_each(b, [&](bool b_now) {
@@ -181,8 +183,8 @@ void Monitor::step(std::uint32_t state, const Moment& m, std::vector<std::uint32
 }
 
 bool Monitor::owes(std::uint32_t state) const {
-    return (o_.kind == RuleKind::kLeadsTo || o_.kind == RuleKind::kTakesAtMost) &&
-           state != kBad && (state & kOwes) != 0;
+    return (o_.kind == RuleKind::kLeadsTo || o_.kind == RuleKind::kTakesAtMost) && state != kBad &&
+           (state & kOwes) != 0;
 }
 
 }  // namespace puppetri::verdict

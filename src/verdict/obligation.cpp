@@ -141,9 +141,9 @@ class Builder {
             n.may = n.must = atoms_.add(part);
         } else {
             about_figures = true;
-            const Lowered lowered = host_ != nullptr
-                                        ? host_->lower(part)
-                                        : Lowered{Formula::constant(true), Formula::constant(false)};
+            const Lowered lowered =
+                host_ != nullptr ? host_->lower(part)
+                                 : Lowered{Formula::constant(true), Formula::constant(false)};
             n.may = atoms_.add(lowered.may);
             n.must = atoms_.add(lowered.must);
         }

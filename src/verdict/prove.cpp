@@ -362,8 +362,8 @@ class Prover {
             if (good[k] != 0 && (!of_one || once[k] != 0)) {
                 w.verdict.answer = Answer::kProved;
                 w.verdict.force = sums[k].force;
-                w.verdict.method = std::string("readiness graphs of ") +
-                                   std::to_string(parts_.count) + " parts";
+                w.verdict.method =
+                    std::string("readiness graphs of ") + std::to_string(parts_.count) + " parts";
                 w.verdict.states = sums[k].states;
                 w.verdict.edges = sums[k].edges;
                 finish(w);
@@ -482,8 +482,9 @@ class Prover {
         const net::NetTables& tables = net.tables();
         const auto inexact = [&](const net::DurationTable& d, std::uint32_t place) {
             if (d.kind == net::DurationKind::kAuto) {
-                const net::ActionIndex a =
-                    place == net::kNoIndex ? net::ActionIndex{} : net.action(net::PlaceIndex{place});
+                const net::ActionIndex a = place == net::kNoIndex
+                                               ? net::ActionIndex{}
+                                               : net.action(net::PlaceIndex{place});
                 return !a.valid() || a.value >= theatre_.actions.size() ||
                        theatre_.actions[a.value].low != theatre_.actions[a.value].high;
             }
@@ -496,17 +497,16 @@ class Prover {
                 return true;
             }
         }
-        return std::any_of(tables.delays.begin(), tables.delays.end(),
-                           [&](const net::DelayTable& d) {
-                               return inexact(d.duration, net::kNoIndex);
-                           });
+        return std::any_of(
+            tables.delays.begin(), tables.delays.end(),
+            [&](const net::DelayTable& d) { return inexact(d.duration, net::kNoIndex); });
     }
 
     // The finding of one method, and what it cost.
     std::optional<Finding> check(Part& part, std::uint32_t number, Method method, Verdict& v) {
         std::string why;
-        const proof::TimedGraph* graph = part.graph(method, budget(method == Method::kReadiness ? 0.4 : 0.6),
-                                                    options_.outside_events, why);
+        const proof::TimedGraph* graph = part.graph(
+            method, budget(method == Method::kReadiness ? 0.4 : 0.6), options_.outside_events, why);
         if (graph == nullptr) {
             if (v.reason.empty()) {
                 v.reason = std::string(name_of(method)) + ": " + why;
@@ -580,9 +580,9 @@ class Prover {
             return;
         }
         const proof::TimedGraph& graph = *part.view(method).timed;
-        const bool possible = w.asked.question == Question::kRule &&
-                              (w.asked.rule.kind == net::RuleKind::kPossible ||
-                               w.asked.rule.kind == net::RuleKind::kQuasiLive);
+        const bool possible =
+            w.asked.question == Question::kRule && (w.asked.rule.kind == net::RuleKind::kPossible ||
+                                                    w.asked.rule.kind == net::RuleKind::kQuasiLive);
         switch (f->kind) {
             case Kind::kHolds:
                 w.verdict.answer = Answer::kProved;
@@ -608,6 +608,12 @@ class Prover {
             case Kind::kSuspect:
                 if (f->target == Target::kFires) {
                     all_fire(part, *f, w, method);
+                    return;
+                }
+                // Whether ties or fate goes round for ever is told by exact states.
+                if (f->target == Target::kEndless && method == Method::kReadiness &&
+                    worth(part, Method::kExact)) {
+                    w.verdict.reason = f->reason;
                     return;
                 }
                 chase(part, *f, w, true);
@@ -710,7 +716,12 @@ class Prover {
                         .transitions = part.transitions,
                         .events = part.events,
                         .fault_counts = fault_of(w.asked.question)};
-        Caught caught = pursue(theatre_, hunt, limits());
+        // A thousand firings in one instant show what a hundred thousand would.
+        Theatre theatre = theatre_;
+        if (w.asked.question == Question::kTimeGoesOn) {
+            theatre.firings_per_instant = 1000;
+        }
+        Caught caught = pursue(theatre, hunt, limits());
         if (!caught.witness) {
             if (!decides) {
                 return;
@@ -720,10 +731,11 @@ class Prover {
             if (draws_times()) {
                 PursueLimits any = limits();
                 any.coincide = true;
-                if (pursue(theatre_, hunt, any).witness) {
-                    w.verdict.reason = "only an exact coincidence of drawn times, which has "
-                                       "probability 0, was found to break it: " +
-                                       f.reason;
+                if (pursue(theatre, hunt, any).witness) {
+                    w.verdict.reason =
+                        "only an exact coincidence of drawn times, which has "
+                        "probability 0, was found to break it: " +
+                        f.reason;
                 }
             }
             return;
@@ -733,8 +745,8 @@ class Prover {
         if (!decides) {
             return;
         }
-        const bool possible = w.asked.question == Question::kRule &&
-                              w.asked.rule.kind == net::RuleKind::kPossible;
+        const bool possible =
+            w.asked.question == Question::kRule && w.asked.rule.kind == net::RuleKind::kPossible;
         w.verdict.answer = possible ? Answer::kProved : Answer::kRefuted;
         w.verdict.reason = possible ? "" : f.reason;
     }
@@ -762,9 +774,9 @@ class Prover {
                             .events = part.events};
             const Caught caught = pursue(theatre_, hunt, limits());
             if (!caught.witness) {
-                w.verdict.reason =
-                    "no run was found in which " +
-                    std::string(net_.transition(net::TransitionIndex{t}).path) + " fires";
+                w.verdict.reason = "no run was found in which " +
+                                   std::string(net_.transition(net::TransitionIndex{t}).path) +
+                                   " fires";
                 return;
             }
         }

@@ -36,9 +36,8 @@ class Track {
     bool lost() const { return nodes_.empty(); }
     std::uint32_t distance() const { return nearest(nodes_); }
     bool all_targets() const {
-        return std::all_of(nodes_.begin(), nodes_.end(), [&](std::uint32_t n) {
-            return hunt_.finding->targets[n] != 0;
-        });
+        return std::all_of(nodes_.begin(), nodes_.end(),
+                           [&](std::uint32_t n) { return hunt_.finding->targets[n] != 0; });
     }
 
     void fired(std::uint32_t transition) {
@@ -189,8 +188,8 @@ class GuidedChooser final : public net::Chooser {
             const std::int64_t drawn =
                 std::clamp(choice.drawn.ticks, choice.low.ticks, choice.high.ticks);
             d.answers = {choice.low.ticks, choice.high.ticks, drawn};
-            const bool continuous = choice.kind == net::ChoiceKind::kDuration ||
-                                    choice.kind == net::ChoiceKind::kDelay;
+            const bool continuous =
+                choice.kind == net::ChoiceKind::kDuration || choice.kind == net::ChoiceKind::kDelay;
             if (continuous && !coincide_ && choice.low != choice.high) {
                 // Never the same twice, nor an end of the support.
                 const auto aside = static_cast<std::int64_t>(7919 * (at_ + 1));
@@ -295,8 +294,9 @@ class Attempt {
             }
             if (stop == run::Stop::kFault) {
                 fault_ = true;
-                reason = "the run stops: " + player_.fault().message +
-                         (player_.fault().element.empty() ? "" : " (" + player_.fault().element + ")");
+                reason =
+                    "the run stops: " + player_.fault().message +
+                    (player_.fault().element.empty() ? "" : " (" + player_.fault().element + ")");
                 if (hunt_.fault_counts != nullptr && hunt_.fault_counts(player_.fault().code)) {
                     return found(player_.firings());
                 }
@@ -314,8 +314,8 @@ class Attempt {
                 }
                 break;
             }
-            steps_.push_back({player_.now(),
-                              std::string(theatre_.net->transition(player_.last()).path)});
+            steps_.push_back(
+                {player_.now(), std::string(theatre_.net->transition(player_.last()).path)});
             const Says late_or_not = watch_.fired(actors_.listener.occurred);
             if (track_ != nullptr) {
                 track_->fired(player_.last().value);
@@ -339,8 +339,8 @@ class Attempt {
             if (hopeless()) {
                 return found(player_.firings());
             }
-            if (script == nullptr && track_ != nullptr && track_->distance() == kFar && !maybe &&
-                target_ != Target::kTooLong) {
+            if (script == nullptr && track_ != nullptr && hunt_.finding->product.complete &&
+                track_->distance() == kFar && !maybe && target_ != Target::kTooLong) {
                 reason = "this run can no longer get there";
                 break;
             }
@@ -407,8 +407,8 @@ class Attempt {
         if (target_ != Target::kEndless || theatre_.auto_durations) {
             return false;
         }
-        const bool owes = hunt_.obligation->kind == net::RuleKind::kEnds ||
-                          watch_.owes_since().has_value();
+        const bool owes =
+            hunt_.obligation->kind == net::RuleKind::kEnds || watch_.owes_since().has_value();
         if (!owes) {
             seen_.clear();
             return false;
@@ -429,8 +429,8 @@ class Attempt {
             reason = "figures decide, and nobody performs them";
             return false;
         }
-        const auto seen = judge_figures(*theatre_.scene, *hunt_.obligation, *actors_.stage,
-                                        player_.now());
+        const auto seen =
+            judge_figures(*theatre_.scene, *hunt_.obligation, *actors_.stage, player_.now());
         if (!seen) {
             reason = "figures decide, and in the runs that were played they keep the rule";
             return false;
@@ -565,8 +565,7 @@ Replayed replay(const Theatre& theatre, const Witness& witness, const Hunt& hunt
         events.push_back({e.at, event});
     }
     attempt.schedule(events);
-    out.breaks = attempt.play(std::max<std::uint64_t>(witness.steps.size(), 1),
-                              now_s() + 3600, nullptr, &witness);
+    out.breaks = attempt.play(witness.steps.size() + 1, now_s() + 3600, nullptr, &witness);
     out.same = attempt.steps() == witness.steps && !chooser.misfit();
     if (!out.breaks) {
         out.trouble = attempt.reason;

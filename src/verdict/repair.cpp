@@ -162,11 +162,12 @@ class Editor {
  private:
     void add_arc(const proof::MonitorPlace::Arc& arc, bool takes, std::vector<lang::Edit>& out) {
         const std::string path(net_.transition(net::TransitionIndex{arc.transition}).path);
-        const auto found = std::find_if(
-            file_.body.transitions.begin(), file_.body.transitions.end(),
-            [&](const lang::Transition& t) { return t.name.text == path; });
+        const auto found =
+            std::find_if(file_.body.transitions.begin(), file_.body.transitions.end(),
+                         [&](const lang::Transition& t) { return t.name.text == path; });
         if (found == file_.body.transitions.end()) {
-            trouble = "it would change " + path + ", which does not stand in the scene's own file "
+            trouble = "it would change " + path +
+                      ", which does not stand in the scene's own file "
                       "outside of nets";
             return;
         }

@@ -46,6 +46,7 @@ struct Performers {
         options.chooser = &chooser;
         options.sink = &listener;
         options.record = true;
+        options.firings_per_instant = theatre.firings_per_instant;
         options.host = &shortest;
         if (theatre.scene != nullptr) {
             stage.emplace(theatre.scene->play);

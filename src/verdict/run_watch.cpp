@@ -199,9 +199,9 @@ RunWatch::Says RunWatch::moment(std::uint32_t label, bool start) {
         return Says::kMaybe;
     }
     states_ = std::move(all);
-    const bool owes = !states_.empty() &&
-                      std::all_of(states_.begin(), states_.end(),
-                                  [&](std::uint32_t s) { return monitor_->owes(s); });
+    const bool owes =
+        !states_.empty() && std::all_of(states_.begin(), states_.end(),
+                                        [&](std::uint32_t s) { return monitor_->owes(s); });
     if (!owes) {
         owes_since_.reset();
     } else if (!owes_since_) {

@@ -32,8 +32,8 @@ double upper_tail(std::uint64_t k, std::uint64_t n, double p) {
         return 1;
     }
     const double ratio = p / (1 - p);
-    const auto mode = std::min<std::uint64_t>(
-        n, static_cast<std::uint64_t>(static_cast<double>(n + 1) * p));
+    const auto mode =
+        std::min<std::uint64_t>(n, static_cast<std::uint64_t>(static_cast<double>(n + 1) * p));
     // Terms relative to that of the mode.
     double above = 0, all = 1;
     if (mode >= k) {
@@ -185,8 +185,7 @@ Sampled sample(const Theatre& theatre, const Obligation& obligation, const AtomR
             return out;
         }
     }
-    const Interval interval =
-        clopper_pearson(options.runs, options.runs, options.confidence);
+    const Interval interval = clopper_pearson(options.runs, options.runs, options.confidence);
     out.sample = Verdict::Sample{.runs = options.runs,
                                  .kept = options.runs,
                                  .low = interval.low,

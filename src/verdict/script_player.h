@@ -31,7 +31,6 @@ class ScriptPlayer {
 
 // The greatest siphon among the empty places: a set of places that can never get a token again
 // (ordinary nets).
-std::vector<std::uint32_t> empty_siphon(const proof::PlainNet& net,
-                                        const proof::Marking& marking);
+std::vector<std::uint32_t> empty_siphon(const proof::PlainNet& net, const proof::Marking& marking);
 
 }  // namespace puppetri::verdict

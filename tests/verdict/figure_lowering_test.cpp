@@ -28,8 +28,7 @@ TEST_CASE("no leg is ever in the air that its movement was said not to lift [law
     for (const char* name : {"02_walk/twice.pup", "02_walk/limbs.pup", "03_ball/ball.pup",
                              "03_ball/figure5.pup", "03_ball/waits.pup"}) {
         Disk files;
-        const auto scene =
-            scene::load(files, std::string(PUP_SOURCE_DIR "/examples/") + name);
+        const auto scene = scene::load(files, std::string(PUP_SOURCE_DIR "/examples/") + name);
         REQUIRE_MESSAGE(scene.has_value(), name);
         scene::PerformOptions options;
         options.horizon.time = SimTime{20 * kTicksPerSecond};
@@ -38,8 +37,7 @@ TEST_CASE("no leg is ever in the air that its movement was said not to lift [law
         const stage::Performance& performance = *performed->performance;
         const auto actors = performance.actors();
         for (std::uint32_t a = 0; a < actors.size(); ++a) {
-            for (std::int64_t t = 0; t < performance.duration().ticks;
-                 t += kTicksPerSecond / 240) {
+            for (std::int64_t t = 0; t < performance.duration().ticks; t += kTicksPerSecond / 240) {
                 bool may_left = false, may_right = false, both = false;
                 for (const stage::ScoreEntry& entry : performance.score()) {
                     if (entry.actor != actors[a].name || entry.start > SimTime{t} ||
@@ -49,8 +47,7 @@ TEST_CASE("no leg is ever in the air that its movement was said not to lift [law
                     for (const stage::Action& action : scene->play.actions) {
                         if (action.place == entry.place) {
                             const Swings s = swings_of(action.call, true);
-                            both = both || s.both || (may_left && s.right) ||
-                                   (may_right && s.left);
+                            both = both || s.both || (may_left && s.right) || (may_right && s.left);
                             may_left = may_left || s.left;
                             may_right = may_right || s.right;
                         }

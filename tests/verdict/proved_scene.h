@@ -15,7 +15,8 @@ namespace puppetri::verdict {
 struct ProvedScene {
     explicit ProvedScene(const std::string& body, ProveOptions options = {}) {
         scene::MemoryFiles files;
-        files.add("test.pup", "language 1\nscene \"test\"\nframes 24 per second, until 10 s\n" + body);
+        files.add("test.pup",
+                  "language 1\nscene \"test\"\nframes 24 per second, until 10 s\n" + body);
         auto loaded = scene::load(files, "test.pup");
         if (!loaded) {
             for (const Diagnostic& d : loaded.error()) {
@@ -46,9 +47,8 @@ struct ProvedScene {
     }
     bool has_note(const std::string& rule, const std::string& part) const {
         const Verdict& v = of(rule);
-        return std::any_of(v.notes.begin(), v.notes.end(), [&](const std::string& n) {
-            return n.find(part) != std::string::npos;
-        });
+        return std::any_of(v.notes.begin(), v.notes.end(),
+                           [&](const std::string& n) { return n.find(part) != std::string::npos; });
     }
 
     std::optional<scene::Scene> scene;

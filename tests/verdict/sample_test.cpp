@@ -10,7 +10,8 @@
 namespace puppetri::verdict {
 namespace {
 
-TEST_CASE("the interval of Clopper and Pearson has its closed forms and its published values [oracle]") {
+TEST_CASE(
+    "the interval of Clopper and Pearson has its closed forms and its published values [oracle]") {
     // All kept: low is (alpha / 2)^(1 / n).
     const Interval all = clopper_pearson(100, 100, 0.95);
     CHECK(all.low == doctest::Approx(std::pow(0.025, 0.01)).epsilon(1e-9));

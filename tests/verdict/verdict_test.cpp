@@ -5,7 +5,8 @@
 
 using namespace puppetri::verdict;
 
-TEST_CASE("REFUTED beats UNKNOWN in the exit status, and SAMPLED is no proof unless accepted [unit]") {
+TEST_CASE(
+    "REFUTED beats UNKNOWN in the exit status, and SAMPLED is no proof unless accepted [unit]") {
     const Verdict proved{.answer = Answer::kProved}, refuted{.answer = Answer::kRefuted},
         unknown{.answer = Answer::kUnknown}, sampled{.answer = Answer::kSampled};
     CHECK(exit_status({}, false) == 0);

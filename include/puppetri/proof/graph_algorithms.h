@@ -64,8 +64,8 @@ struct StrongComponents {
 StrongComponents strong_components(const Graph& graph, const StateBits* within = nullptr);
 // StrongComponents that no edge of the graph leaves. One bit per component.
 StateBits bottom_components(const Graph& graph, const StrongComponents& components);
-// StrongComponents that have an edge inside: a path may stay in them for ever. Edges into states that
-// were left out do not count. One bit per component.
+// StrongComponents that have an edge inside: a path may stay in them for ever. Edges into states
+// that were left out do not count. One bit per component.
 StateBits cyclic_components(const Graph& graph, const StrongComponents& components);
 
 // All states that paths through `within` (null: all) lead to, from members of `from` that lie in

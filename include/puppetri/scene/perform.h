@@ -23,7 +23,7 @@ struct PerformOptions {
     // The answers to all choices, as a witness or a recorded session has them; when they are used
     // up, the first option, or what the stream says. Left out: chance decides, from the seed.
     std::optional<std::vector<std::int64_t>> script;
-    bool record = false;                    // keep the outside events in Performed::recording
+    bool record = false;  // keep the outside events in Performed::recording
     // Asked about 20 times a second of model time, with the share done; answering false ends the
     // run cleanly.
     bool (*go_on)(void* context, double share_done) = nullptr;

@@ -28,8 +28,8 @@ struct GraphView {
 
 struct Finding {
     enum class Kind : std::uint8_t {
-        kHolds,      // proved by this graph
-        kSuspect,    // a run into `targets` would refute the rule (of `possible`: prove it)
+        kHolds,       // proved by this graph
+        kSuspect,     // a run into `targets` would refute the rule (of `possible`: prove it)
         kImpossible,  // of `possible`, `quasi_live`: no path gets there; refuted
         kRefuted,     // by an exact graph; `path` shows it, if one run can
         kUnknown,
@@ -53,7 +53,8 @@ struct Finding {
     Nodes targets;
     std::uint32_t transition = ~std::uint32_t{0};
     std::string subject;  // who freezes
-    // Of kRefuted: edges from the start, and from which of them on it goes round (kFar: it does not).
+    // Of kRefuted: edges from the start, and from which of them on it goes round (kFar: it does
+    // not).
     std::vector<std::uint32_t> path;
     std::uint32_t loop_from = kFar;
 };

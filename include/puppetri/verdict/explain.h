@@ -24,7 +24,7 @@ struct Wait {
     std::string taken_by;    // the firing that took the last one from there, and when; empty: never
                              // had one
     std::vector<std::string> givers;  // the transitions that could give one
-    std::string words;       // all of it in a sentence
+    std::string words;                // all of it in a sentence
 };
 
 struct Explanation {
@@ -38,10 +38,10 @@ Explanation explain(const scene::Scene& scene, const Verdict& verdict);
 
 // A change of the scene's text.
 struct Repair {
-    std::string idea;      // in a sentence
-    std::string source;    // the theorem behind it
-    std::string text;      // the whole file, changed
-    std::string diff;      // lines with - and +
+    std::string idea;             // in a sentence
+    std::string source;           // the theorem behind it
+    std::string text;             // the whole file, changed
+    std::string diff;             // lines with - and +
     std::vector<Verdict> proved;  // of the changed scene: the rule is proved, nothing got worse
 };
 // By a supervisor place: for `mutex`, `never` of two places and `bounded` after Moody and

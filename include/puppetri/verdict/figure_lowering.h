@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What can be said of figures before anything moves: statements about phases of limbs and holders of
-// props, told as statements about places. Which leg a movement can lift is known from its call;
+// What can be said of figures before anything moves: statements about phases of limbs and holders
+// of props, told as statements about places. Which leg a movement can lift is known from its call;
 // when it does so only the stage knows. So a statement about figures becomes two about the net: one
 // that holds whenever it may hold, one that holds only if it must.
 #pragma once

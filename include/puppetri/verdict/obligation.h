@@ -49,8 +49,9 @@ struct Operand {
         Op op = Op::kConstant;
         bool value = false;
         std::uint32_t a = 0, b = 0;  // operands
-        // Of kAtom: the atom that holds whenever the statement may hold, and the one that holds only
-        // if it must. Equal for statements about the net; statements about figures lie between.
+        // Of kAtom: the atom that holds whenever the statement may hold, and the one that holds
+        // only if it must. Equal for statements about the net; statements about figures lie
+        // between.
         std::uint32_t may = 0, must = 0;
         std::uint32_t index = 0;  // of transitions and events
     };
@@ -82,7 +83,7 @@ struct Obligation {
     std::vector<Operand> operands;
     std::optional<SimTime> within;
     bool when_settled = false;
-    bool about_figures = false;       // host atoms were lowered: only the stage can refute it
+    bool about_figures = false;  // host atoms were lowered: only the stage can refute it
     std::vector<std::uint32_t> transitions;  // of live, quasi_live: never empty
     std::vector<std::string> subjects;       // of nobody_freezes: per operand, if known
     // Of kFormula: taken apart, with the atoms that hold if each of its atoms may, or must.

@@ -26,6 +26,7 @@ struct Theatre {
     SimTime beat{kTicksPerSecond};
     // By net::ActionIndex, for nets whose movements nobody performs: how long they take.
     std::vector<proof::TickRange> actions;
+    std::uint32_t firings_per_instant = 100'000;
     // Some duration is decided by the stage alone.
     bool auto_durations = false;
 };
@@ -61,9 +62,9 @@ Caught pursue(const Theatre& theatre, const Hunt& hunt, const PursueLimits& limi
 
 // Plays a witness from its script.
 struct Replayed {
-    bool same = false;      // every firing as written, at its time
-    bool breaks = false;    // and the rule is broken where it says
-    std::string trouble;    // if not
+    bool same = false;    // every firing as written, at its time
+    bool breaks = false;  // and the rule is broken where it says
+    std::string trouble;  // if not
 };
 Replayed replay(const Theatre& theatre, const Witness& witness, const Hunt& hunt);
 

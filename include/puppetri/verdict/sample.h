@@ -38,9 +38,9 @@ class WaldTest {
 };
 
 struct SampleOptions {
-    std::uint64_t runs = 1000;                   // fixed beforehand
-    SimTime horizon{600 * kTicksPerSecond};      // of each run
-    std::uint64_t firings = 100'000;             // likewise
+    std::uint64_t runs = 1000;               // fixed beforehand
+    SimTime horizon{600 * kTicksPerSecond};  // of each run
+    std::uint64_t firings = 100'000;         // likewise
     double confidence = 0.95;
     double seconds = 30;
 };

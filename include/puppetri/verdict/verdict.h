@@ -59,7 +59,8 @@ struct Verdict {
     std::optional<Sample> sample;
 };
 
-// "PROVED", "PROVED for every choice", "PROVED with probability 1", "REFUTED", "UNKNOWN", "SAMPLED".
+// "PROVED", "PROVED for every choice", "PROVED with probability 1", "REFUTED", "UNKNOWN",
+// "SAMPLED".
 std::string name_of(const Verdict& verdict);
 
 // What a program that has these verdicts ends with: 0 all are proved, 1 one is refuted (that beats

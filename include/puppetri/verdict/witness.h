@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A witness: a run that shows what a verdict says. Not a picture of a run but its recipe, the answer
-// to every choice, so that the player plays it again, the stage performs it, and it exports and
-// renders like any other run.
+// A witness: a run that shows what a verdict says. Not a picture of a run but its recipe, the
+// answer to every choice, so that the player plays it again, the stage performs it, and it exports
+// and renders like any other run.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -34,8 +34,8 @@ struct Witness {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     // After so many firings what is shown is there (0: at the start). kNone: nothing but the lasso.
     std::uint32_t violates_after = kNone;
-    // After so many firings the run is where it is again at the end, and goes round for ever. kNone:
-    // it does not.
+    // After so many firings the run is where it is again at the end, and goes round for ever.
+    // kNone: it does not.
     std::uint32_t lasso_from = kNone;
     // When the last thing that matters happens: a run of the witness is played up to here at least.
     SimTime until;
