@@ -226,7 +226,7 @@ std::string witness_path(const std::string& folder, const std::string& rule) {
         c = good ? c : '_';
     }
     if (name.empty() || name[0] == '.') {
-        name.insert(0, "_");
+        name = std::string(1, '_') + name;
     }
     return folder + "/" + name + ".witness.json";
 }
