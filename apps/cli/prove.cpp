@@ -70,8 +70,11 @@ void print_table(const std::vector<Verdict>& verdicts, const std::vector<std::st
                         number_to_text_fixed(v.sample->high, 4).c_str(),
                         number_to_text(v.sample->confidence).c_str());
         }
+        constexpr std::size_t kWide = 100;
         for (const std::string& note : v.notes) {
-            std::printf("%s%s\n", indent.c_str(), note.c_str());
+            if (count_code_points(note) <= kWide) {
+                std::printf("%s%s\n", indent.c_str(), note.c_str());
+            }
         }
         if (!witnesses[i].empty()) {
             std::printf("%switness: %s\n", indent.c_str(), witnesses[i].c_str());

@@ -11,7 +11,7 @@
 namespace puppetri::io {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using verdict::Witness;
 
 constexpr int kVersion = 1;
@@ -23,7 +23,7 @@ std::string hexadecimal(std::uint64_t x) {
     return std::string(text, end);
 }
 
-std::optional<std::uint64_t> from_text(const json& value, int base) {
+std::optional<std::uint64_t> from_text(const Json& value, int base) {
     const auto* text = value.get_ptr<const std::string*>();
     if (text == nullptr || text->empty()) {
         return std::nullopt;
@@ -45,7 +45,7 @@ class Reader {
             fail("the file is longer than any witness");
             return Unexpected(std::move(defects_));
         }
-        const json document = json::parse(text.begin(), text.end(), nullptr, false);
+        const Json document = Json::parse(text.begin(), text.end(), nullptr, false);
         if (document.is_discarded() || !document.is_object()) {
             fail("this is no JSON object");
             return Unexpected(std::move(defects_));
@@ -58,7 +58,7 @@ class Reader {
         w.says = string(document, "says");
         w.net_hash = number(document, "net_hash", 16);
         w.seed = number(document, "seed", 10);
-        for (const json& choice : array(document, "choices")) {
+        for (const Json& choice : array(document, "choices")) {
             if (!choice.is_number_integer() ||
                 (choice.is_number_unsigned() &&
                  choice.get<std::uint64_t>() >
@@ -68,13 +68,13 @@ class Reader {
             }
             w.choices.push_back(choice.get<std::int64_t>());
         }
-        for (const json& event : array(document, "events")) {
+        for (const Json& event : array(document, "events")) {
             if (bad_element(event)) {
                 break;
             }
             w.events.push_back({ticks(event, "tick"), string(event, "event")});
         }
-        for (const json& step : array(document, "steps")) {
+        for (const Json& step : array(document, "steps")) {
             if (bad_element(step)) {
                 break;
             }
@@ -99,13 +99,13 @@ class Reader {
                                 .remedy = "make it again with `puppetri prove`"});
         }
     }
-    bool bad_element(const json& value) {
+    bool bad_element(const Json& value) {
         if (!value.is_object()) {
             fail("an event or a step is an object");
         }
         return !defects_.empty();
     }
-    const json* member(const json& object, const char* name) {
+    const Json* member(const Json& object, const char* name) {
         const auto found = object.find(name);
         if (found == object.end()) {
             fail(std::string("there is no \"") + name + "\"");
@@ -113,8 +113,8 @@ class Reader {
         }
         return &*found;
     }
-    std::string string(const json& object, const char* name) {
-        const json* value = member(object, name);
+    std::string string(const Json& object, const char* name) {
+        const Json* value = member(object, name);
         const auto* text = value == nullptr ? nullptr : value->get_ptr<const std::string*>();
         if (text == nullptr) {
             fail(std::string("\"") + name + "\" is a text");
@@ -122,17 +122,17 @@ class Reader {
         }
         return *text;
     }
-    std::uint64_t number(const json& object, const char* name, int base) {
-        const json* value = member(object, name);
+    std::uint64_t number(const Json& object, const char* name, int base) {
+        const Json* value = member(object, name);
         const auto x = value == nullptr ? std::nullopt : from_text(*value, base);
         if (!x) {
             fail(std::string("\"") + name + "\" is a number in quotes");
         }
         return x.value_or(0);
     }
-    std::int64_t integer(const json& object, const char* name, std::int64_t low,
+    std::int64_t integer(const Json& object, const char* name, std::int64_t low,
                          std::int64_t high) {
-        const json* value = member(object, name);
+        const Json* value = member(object, name);
         if (value == nullptr || !value->is_number_integer() ||
             (value->is_number_unsigned() &&
              value->get<std::uint64_t>() > static_cast<std::uint64_t>(high)) ||
@@ -142,12 +142,12 @@ class Reader {
         }
         return value->get<std::int64_t>();
     }
-    SimTime ticks(const json& object, const char* name) {
+    SimTime ticks(const Json& object, const char* name) {
         return {integer(object, name, 0, std::numeric_limits<std::int64_t>::max())};
     }
-    const json& array(const json& object, const char* name) {
-        static const json kEmpty = json::array();
-        const json* value = member(object, name);
+    const Json& array(const Json& object, const char* name) {
+        static const Json kEmpty = Json::array();
+        const Json* value = member(object, name);
         if (value == nullptr || !value->is_array()) {
             fail(std::string("\"") + name + "\" is a list");
             return kEmpty;
@@ -155,8 +155,8 @@ class Reader {
         return *value;
     }
     // A number of firings, or null.
-    std::uint32_t step_number(const json& object, const char* name, const Witness& w) {
-        const json* value = member(object, name);
+    std::uint32_t step_number(const Json& object, const char* name, const Witness& w) {
+        const Json* value = member(object, name);
         if (value != nullptr && value->is_null()) {
             return Witness::kNone;
         }

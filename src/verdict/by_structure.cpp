@@ -63,7 +63,8 @@ Lowered lowered(const Formula& f, const HostLowering* host) {
 
 }  // namespace
 
-Structure::Structure(const net::Net& net) : net_(net), plain_(proof::plain(net)) {
+Structure::Structure(const net::Net& net, const net::NetDraft& draft)
+    : net_(net), draft_(draft), plain_(proof::plain(net)) {
     emptied_.resize(net.place_count(), 0);
     for (const net::Special& s : net.tables().specials) {
         for (const net::ArcTable& arc : s.arcs) {
@@ -80,13 +81,20 @@ Structure::Structure(const net::Net& net) : net_(net), plain_(proof::plain(net))
 std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLowering* host,
                                                 const proof::Budget& budget) {
     if (asked.question == Question::kOneOfEach) {
+        const auto lowered_draft = net::lower(draft_);
+        const bool same = lowered_draft && lowered_draft->places.size() == net_.place_count();
         const proof::IdentityAnswer answer =
-            proof::conserves_identity(net_, asked.places, asked.attributes);
+            same ? proof::conserves_identity(*lowered_draft, asked.places, asked.attributes)
+                 : proof::IdentityAnswer{};
         if (!answer.conserved) {
             return std::nullopt;
         }
         return StructuralProof{.method = "identities are conserved",
                                .notes = {"every firing hands on each one that it takes"}};
+    }
+    if (asked.question == Question::kTimeGoesOn && instants_end()) {
+        return StructuralProof{.method = "arcs",
+                               .notes = {"what takes no time cannot go round"}};
     }
     if (asked.question != Question::kRule || plain_.unsound) {
         return std::nullopt;
@@ -121,14 +129,113 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
     }
 }
 
+// An instant ends: who takes ready tokens from a place where tokens wait is not fired by tokens of
+// the same instant, so that it fires there a bounded number of times; if the others cannot go
+// round, they do not either. Nothing is said of nets with raised events, whose occurrences an
+// instant may multiply.
+bool Structure::instants_end() const {
+    const net::NetTables& tables = net_.tables();
+    const std::uint32_t count = net_.transition_count();
+    const auto waits = [&](std::uint32_t p) {
+        const std::uint32_t number = tables.place[p].duration;
+        if (number == net::kNoIndex) {
+            return false;
+        }
+        const net::DurationTable& d = tables.durations[number];
+        Value value = 0;
+        switch (d.kind) {
+            case net::DurationKind::kConstant:
+                return d.ticks > 0;
+            case net::DurationKind::kInterval:
+                return tables.code.is_constant(d.a, value) && value > 0;
+            case net::DurationKind::kAuto:  // movements last at least a millisecond
+                return true;
+            default:
+                return false;
+        }
+    };
+    // Arcs may give a token a time of its own, which may be none.
+    std::vector<std::uint8_t> own_time(net_.place_count(), 0);
+    for (const net::Special& s : tables.specials) {
+        if (!s.raises.empty()) {
+            return false;
+        }
+        for (const net::OutputTable& out : s.outputs) {
+            if (out.lasts.valid()) {
+                own_time[out.place] = 1;
+            }
+        }
+    }
+    std::vector<std::uint8_t> slow(count, 0);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        for (const net::Weighted& w : tables.takes(t)) {
+            slow[t] |= waits(w.place) && own_time[w.place] == 0 ? 1 : 0;
+        }
+        const std::uint32_t special = tables.transition[t].special;
+        if (special == net::kNoIndex) {
+            continue;
+        }
+        const net::Special& s = tables.specials[special];
+        for (const net::ArcTable& arc : s.arcs) {
+            slow[t] |= arc.kind == net::ArcKind::kTake && waits(arc.place) &&
+                               own_time[arc.place] == 0
+                           ? 1
+                           : 0;
+        }
+        // An occurrence is offered to each once.
+        slow[t] |= s.events.empty() ? 0 : 1;
+    }
+    // The others, by the places between them: no way round.
+    std::vector<std::uint32_t> before(count, 0), queue;
+    std::vector<std::vector<std::uint32_t>> takers(net_.place_count());
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (slow[t] == 0) {
+            if (plain_.net.takes.row(t).empty()) {
+                return false;
+            }
+            for (const net::Weighted& w : plain_.net.takes.row(t)) {
+                takers[w.place].push_back(t);
+            }
+        }
+    }
+    for (std::uint32_t t = 0; t < count; ++t) {
+        for (const net::Weighted& w : plain_.net.gives.row(t)) {
+            for (const std::uint32_t next : takers[w.place]) {
+                before[next] += slow[t] == 0 ? 1 : 0;
+            }
+        }
+    }
+    std::uint32_t left = 0;
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (slow[t] == 0) {
+            ++left;
+            if (before[t] == 0) {
+                queue.push_back(t);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+        --left;
+        for (const net::Weighted& w : plain_.net.gives.row(queue[i])) {
+            for (const std::uint32_t next : takers[w.place]) {
+                if (--before[next] == 0) {
+                    queue.push_back(next);
+                }
+            }
+        }
+    }
+    return left == 0 && !plain_.unsound;
+}
+
 std::optional<StructuralProof> Structure::by_theorem(const proof::Budget& budget) {
     if (net_.transition_count() == 0) {
         return std::nullopt;
     }
     if (!live_) {
         const proof::TimedLiveness answer = proof::timed_liveness(net_, budget);
-        live_ = answer.live;
-        theorem_ = answer.theorem;
+        live_ = answer.live && !answer.needs_clean_ends &&
+                (!answer.needs_time_goes_on || instants_end());
+        theorem_ = answer.reason;
     }
     if (!*live_) {
         return std::nullopt;

@@ -22,7 +22,8 @@ struct StructuralProof {
 
 class Structure {
  public:
-    explicit Structure(const net::Net& net);
+    // `draft`: what the net was compiled from. Both outlive it.
+    Structure(const net::Net& net, const net::NetDraft& draft);
     // Nothing: these methods cannot say.
     std::optional<StructuralProof> prove(const Asked& asked, const HostLowering* host,
                                          const proof::Budget& budget);
@@ -31,13 +32,19 @@ class Structure {
     std::optional<StructuralProof> by_invariants(const net::Rule& rule, const HostLowering* host,
                                                  const proof::Budget& budget);
     std::optional<StructuralProof> by_theorem(const proof::Budget& budget);
+    bool instants_end() const;
 
     const net::Net& net_;
+    const net::NetDraft& draft_;
     proof::Plain plain_;
     std::vector<std::uint8_t> emptied_;
     std::vector<std::string_view> names_;
     std::optional<bool> live_;
     std::string theorem_;
+
+ public:
+    // Of `bounded`: what was found where it does not hold without time.
+    std::string grows;
 };
 
 }  // namespace puppetri::verdict

@@ -28,6 +28,15 @@ Part::Part(const net::Net& whole, const Theatre& theatre, const HostLowering* ho
 std::unique_ptr<Part> Part::of(net::NetDraft draft, const Theatre& theatre,
                                const stage::Play* play) {
     auto compiled = net::compile(draft);
+    if (compiled && compiled->paced() && !theatre.net->paced()) {
+        // A part without any time in a net that has some does not go one firing per beat: a place
+        // that would take time, with no token ever, says so.
+        net::PlaceDraft clock;
+        clock.path = "time passes elsewhere";
+        clock.duration = net::DurationDraft::constant(SimTime{kTicksPerSecond});
+        draft.places.push_back(std::move(clock));
+        compiled = net::compile(draft);
+    }
     if (!compiled) {
         return nullptr;
     }

@@ -39,7 +39,12 @@ class Part {
     const proof::TimedGraph* graph(Method method, const proof::Budget& budget,
                                    std::uint32_t outside_events, std::string& why);
     GraphView view(Method method) const;
+    bool has(Method method) const { return graphs_[static_cast<std::size_t>(method)].has_value(); }
     void forget(Method method);
+
+    // Found on the way: without time this place grows without end.
+    bool grows = false;
+    std::string grows_where;
 
     // From the numbers of the whole net to those of the part; empty: the same.
     std::vector<std::uint32_t> transitions, events;

@@ -15,6 +15,7 @@
 #include "part.h"
 #include "puppetri/net/tables.h"
 #include "puppetri/proof/components.h"
+#include "puppetri/proof/coverability.h"
 #include "puppetri/proof/slice.h"
 #include "puppetri/verdict/sample.h"
 #include "temporal_rule.h"
@@ -49,7 +50,7 @@ class Prover {
           play_(play),
           options_(options),
           started_(now_s()),
-          structure_(net_) {
+          structure_(net_, draft_) {
         if (play_ != nullptr) {
             host_ = std::make_unique<FigureLowering>(net_, *play_);
         }
@@ -123,6 +124,10 @@ class Prover {
             return;
         }
         w.seconds += now_s() - begin;
+        if (w.asked.question == Question::kRule && !structure_.grows.empty() &&
+            w.asked.rule.kind == net::RuleKind::kBounded) {
+            w.verdict.notes.push_back(structure_.grows);
+        }
         if (w.asked.question == Question::kOneOfEach) {
             w.verdict.reason = "an arc may lose, copy or make up an identity";
             finish(w);
@@ -346,7 +351,7 @@ class Prover {
                 std::optional<Finding> f = check(*part, number, Method::kReadiness, v);
                 const bool holds = f && f->kind == Kind::kHolds;
                 once[k] |= holds ? 1 : 0;
-                good[k] &= holds || w.asked.rule.kind == net::RuleKind::kDeadlockFree ? 1 : 0;
+                good[k] &= holds || of_one(w.asked) ? 1 : 0;
                 sums[k].states += v.states;
                 sums[k].edges += v.edges;
                 if (f && f->force != Force::kPlain) {
@@ -357,9 +362,7 @@ class Prover {
         bool all = true;
         for (std::size_t k = 0; k < group.size(); ++k) {
             Work& w = works_[group[k]];
-            const bool of_one = w.asked.question == Question::kRule &&
-                                w.asked.rule.kind == net::RuleKind::kDeadlockFree;
-            if (good[k] != 0 && (!of_one || once[k] != 0)) {
+            if (good[k] != 0 && (!of_one(w.asked) || once[k] != 0)) {
                 w.verdict.answer = Answer::kProved;
                 w.verdict.force = sums[k].force;
                 w.verdict.method =
@@ -372,6 +375,11 @@ class Prover {
             }
         }
         return all;
+    }
+    // It is enough that one part keeps it.
+    static bool of_one(const Asked& asked) {
+        return asked.question == Question::kRule &&
+               asked.rule.kind == net::RuleKind::kDeadlockFree;
     }
     // A part can be asked by itself, and the answers put together.
     static bool splits(const Asked& asked) {
@@ -468,7 +476,7 @@ class Prover {
     bool worth(Part& part, Method method) {
         std::string why;
         const proof::TimedGraph* readiness =
-            part.graph(Method::kReadiness, budget(0.4), options_.outside_events, why);
+            graph_of(part, Method::kReadiness, why);
         if (readiness != nullptr && readiness->graph.exact &&
             readiness->graph.ended == proof::Ended::kDone) {
             return false;
@@ -500,6 +508,35 @@ class Prover {
         return std::any_of(
             tables.delays.begin(), tables.delays.end(),
             [&](const net::DelayTable& d) { return inexact(d.duration, net::kNoIndex); });
+    }
+
+    // What grows without end even without time will hardly end with it: not all is spent on it.
+    const proof::TimedGraph* graph_of(Part& part, Method method, std::string& why) {
+        constexpr std::uint64_t kFew = 20'000;
+        proof::Budget b = budget(method == Method::kReadiness ? 0.4 : 0.6);
+        const std::uint64_t states = b.states;
+        if (method == Method::kReadiness || part.grows) {
+            b.states = std::min(b.states, kFew);
+        }
+        const bool known = part.has(method);
+        const proof::TimedGraph* graph = part.graph(method, b, options_.outside_events, why);
+        if (graph == nullptr || known || graph->graph.ended == proof::Ended::kDone ||
+            part.grows || b.states == states) {
+            return graph;
+        }
+        proof::Budget little = budget(0.1);
+        little.seconds = std::min(little.seconds, 2.0);
+        const proof::Plain plain = proof::plain(part.net());
+        const proof::BoundednessAnswer answer =
+            plain.unsound ? proof::BoundednessAnswer{} : proof::boundedness(plain.net, little);
+        if (answer.kind == proof::BoundednessAnswer::kUnbounded) {
+            part.grows = true;
+            part.grows_where = part.net().place(net::PlaceIndex{answer.place}).path;
+            return graph;
+        }
+        part.forget(method);
+        b.states = states;
+        return part.graph(method, b, options_.outside_events, why);
     }
 
     // The finding of one method, and what it cost.
@@ -610,9 +647,12 @@ class Prover {
                     all_fire(part, *f, w, method);
                     return;
                 }
-                // Whether ties or fate goes round for ever is told by exact states.
-                if (f->target == Target::kEndless && method == Method::kReadiness &&
-                    worth(part, Method::kExact)) {
+                // Whether ties or fate goes round for ever is told by exact states, and what is too
+                // late by those that know times.
+                if (method == Method::kReadiness &&
+                    ((f->target == Target::kEndless && worth(part, Method::kExact)) ||
+                     (f->target == Target::kTooLong &&
+                      (worth(part, Method::kExact) || worth(part, Method::kClasses))))) {
                     w.verdict.reason = f->reason;
                     return;
                 }
@@ -628,6 +668,10 @@ class Prover {
                 return;
             case Kind::kUnknown:
                 w.verdict.reason = std::string(name_of(method)) + ": " + f->reason;
+                if (part.grows && f->reason.find("may grow") == std::string::npos) {
+                    w.verdict.reason +=
+                        " (without time, place " + part.grows_where + " grows without end)";
+                }
                 return;
         }
     }
@@ -684,9 +728,10 @@ class Prover {
         w.reader = std::make_unique<AtomReader>(net_, w.atoms.formulas());
         return w;
     }
-    PursueLimits limits() const {
+    PursueLimits limits(const Finding& f) const {
         PursueLimits l;
-        l.seconds = std::clamp(left() * 0.3, 0.0, 10.0);
+        // Half a graph is a poor guide.
+        l.seconds = std::clamp(left() * 0.1, 0.0, f.product.complete ? 5.0 : 2.0);
         l.cancelled = options_.budget.cancelled;
         return l;
     }
@@ -721,7 +766,7 @@ class Prover {
         if (w.asked.question == Question::kTimeGoesOn) {
             theatre.firings_per_instant = 1000;
         }
-        Caught caught = pursue(theatre, hunt, limits());
+        Caught caught = pursue(theatre, hunt, limits(f));
         if (!caught.witness) {
             if (!decides) {
                 return;
@@ -729,7 +774,7 @@ class Prover {
             w.verdict.reason =
                 f.reason + ", but no run was found that does it (" + caught.reason + ")";
             if (draws_times()) {
-                PursueLimits any = limits();
+                PursueLimits any = limits(f);
                 any.coincide = true;
                 if (pursue(theatre, hunt, any).witness) {
                     w.verdict.reason =
@@ -772,7 +817,7 @@ class Prover {
                             .finding = &f,
                             .transitions = part.transitions,
                             .events = part.events};
-            const Caught caught = pursue(theatre_, hunt, limits());
+            const Caught caught = pursue(theatre_, hunt, limits(f));
             if (!caught.witness) {
                 w.verdict.reason = "no run was found in which " +
                                    std::string(net_.transition(net::TransitionIndex{t}).path) +

@@ -29,8 +29,8 @@ class ScriptPlayer {
     run::Player player_;
 };
 
-// The greatest siphon among the empty places: a set of places that can never get a token again
-// (ordinary nets).
+// A siphon among the empty places that had tokens at first, with no smaller one in it: a set of
+// places that can never get a token again (ordinary nets). Empty: there is none.
 std::vector<std::uint32_t> empty_siphon(const proof::PlainNet& net, const proof::Marking& marking);
 
 }  // namespace puppetri::verdict
