@@ -63,7 +63,7 @@ void shortest_time(const Graph& g, const StateBits& wanted, TimeToReach& out) {
 void longest_time(const Graph& g, const StateBits& wanted, TimeToReach& out) {
     StateBits others = wanted;
     others.complement();
-    const Components components = strong_components(g, &others);
+    const StrongComponents components = strong_components(g, &others);
     std::vector<std::uint32_t> order(components.count, kNone);
     for (std::uint32_t s = 0; s < g.size(); ++s) {
         if (components.of[s] != Components::kNone) {
