@@ -66,7 +66,7 @@ void longest_time(const Graph& g, const StateBits& wanted, TimeToReach& out) {
     const StrongComponents components = strong_components(g, &others);
     std::vector<std::uint32_t> order(components.count, kNone);
     for (std::uint32_t s = 0; s < g.size(); ++s) {
-        if (components.of[s] != Components::kNone) {
+        if (components.of[s] != StrongComponents::kNone) {
             order[components.of[s]] = s;
         }
     }
@@ -158,11 +158,11 @@ class Ratio {
     bool visits_get_rarer() const {
         StateBits others = visits_;
         others.complement();
-        const Components inner = strong_components(g_, &others);
+        const StrongComponents inner = strong_components(g_, &others);
         for (std::size_t i = 0; i < edges_.size(); ++i) {
             const std::uint32_t a = inner.of[sources_[i]];
             const std::uint32_t b = inner.of[g_.edges.items[edges_[i]].target];
-            if (a == b && a != Components::kNone && g_.high_ticks[edges_[i]] > 0) {
+            if (a == b && a != StrongComponents::kNone && g_.high_ticks[edges_[i]] > 0) {
                 return true;
             }
         }
@@ -260,7 +260,7 @@ class Ratio {
 
     const Graph& g_;
     const StateBits& visits_;
-    Components components_;
+    StrongComponents components_;
     std::vector<std::uint32_t> edges_, sources_;
 };
 

@@ -115,7 +115,7 @@ Decision live_by_graph(ContestSession& session, const proof::Budget& budget) {
         return {};
     }
     const proof::Graph& graph = made.graph;
-    const proof::Components components = proof::strong_components(graph);
+    const proof::StrongComponents components = proof::strong_components(graph);
     const proof::StateBits bottoms = proof::bottom_components(graph, components);
     std::vector<std::uint32_t> number(components.count, 0);
     std::uint32_t count = 0;
