@@ -107,7 +107,7 @@ void Elaboration::complete_rule(const Element<lang::Rule>& rule) {
     }
     out.when_settled = node.when_settled;
     if (node.kind == lang::RuleKind::kBounded && !node.bound) {
-        out.count = net::Rule::kNoCount;
+        out.count = -1;  // some limit, whatever it is
     }
     switch (node.kind) {
         case lang::RuleKind::kBounded:

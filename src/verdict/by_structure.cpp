@@ -106,7 +106,7 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
         case RuleKind::kExactlyOne:
             return by_invariants(asked.rule, host, budget);
         case RuleKind::kBounded:
-            if (asked.rule.count != net::Rule::kNoCount) {
+            if (asked.rule.count != kNoCount) {
                 return by_invariants(asked.rule, host, budget);
             }
             if (proof::boundedness(plain_.net, budget).kind == proof::BoundednessAnswer::kBounded) {

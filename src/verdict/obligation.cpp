@@ -326,7 +326,7 @@ Obligation make_obligation(const net::Net& net, const net::Rule& rule, const Hos
     o.subjects = rule.subjects;
     switch (rule.kind) {
         case net::RuleKind::kBounded:
-            if (rule.count != net::Rule::kNoCount) {
+            if (rule.count != kNoCount) {
                 o.operands.push_back(make_operand(over_full(net, rule), host, atoms));
             }
             break;

@@ -896,7 +896,7 @@ std::vector<Asked> all_rules(const net::NetDraft& draft, const net::Net& net) {
             a.rule.path = path;
             a.rule.caption = caption;
             a.rule.kind = kind;
-            a.rule.count = kind == net::RuleKind::kBounded ? net::Rule::kNoCount : 1;
+            a.rule.count = kind == net::RuleKind::kBounded ? kNoCount : 1;
             out.push_back(std::move(a));
         };
         ask("deadlock_free", "the net stops in ends only", net::RuleKind::kDeadlockFree);

@@ -116,7 +116,7 @@ std::optional<Bound> bound_of(const net::Rule& rule) {
             b.limit = static_cast<std::int64_t>(places.size()) - 1;
             break;
         case net::RuleKind::kBounded:
-            if (places.size() != 1 || rule.count == net::Rule::kNoCount) {
+            if (places.size() != 1 || rule.count == kNoCount) {
                 return std::nullopt;
             }
             b.limit = rule.count;

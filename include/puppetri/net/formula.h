@@ -92,8 +92,7 @@ enum class RuleKind : std::uint8_t {
     kAlways,      // operand 0
     kMutex,       // at most one of all operands
     kExactlyOne,  // of all operands
-    kBounded,     // place operands (none: all places) have at most `count` tokens; kNoCount: some
-                  // limit
+    kBounded,     // place operands have at most `count` tokens
     kAlternate,   // firings or states, in turn
     kOnlyIf,      // operand 0 only if operand 1
     kUntil,       // after operand 0 no operand 1 until operand 2
@@ -118,7 +117,6 @@ struct Rule {
     std::vector<TransitionIndex> transitions;
     std::vector<std::string> subjects;
     std::optional<SimTime> within;
-    static constexpr std::int64_t kNoCount = -1;
     std::int64_t count = 1;
     bool when_settled = false;  // checked only where time passes
 };

@@ -15,6 +15,9 @@
 
 namespace puppetri::verdict {
 
+// net::Rule::count of `bounded` without a number: there is some bound.
+inline constexpr std::int64_t kNoCount = -1;
+
 // What is known about a statement: it may hold, it must hold. Exact: both are equal.
 struct Truth {
     bool may = false, must = false;
