@@ -11,6 +11,7 @@
 #include "puppetri/proof/supervisor.h"
 #include "puppetri/verdict/explain.h"
 #include "puppetri/verdict/prove.h"
+#include "puppetri/verdict/obligation.h"
 #include "script_player.h"
 
 namespace puppetri::verdict {

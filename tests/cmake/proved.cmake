@@ -1,0 +1,17 @@
+# What an example says that `puppetri prove` and `explain` print: COMMAND SCENE [RULE], compared with EXPECTED. Times
+# differ from run to run and are left out. With UPDATE the file is written instead.
+execute_process(COMMAND "${PUPPETRI}" ${ARGUMENTS} -o "${WORK}" WORKING_DIRECTORY "${ROOT}" OUTPUT_VARIABLE printed
+    ERROR_VARIABLE errors RESULT_VARIABLE code)
+string(REGEX REPLACE " +[0-9.]+ m?s\n" "\n" printed "${printed}")
+string(REPLACE "${WORK}" "out" printed "${printed}")
+if(NOT code EQUAL EXIT)
+    message(FATAL_ERROR "exit code ${code} instead of ${EXIT}: ${printed}${errors}")
+endif()
+if(UPDATE)
+    file(WRITE "${ROOT}/${EXPECTED}" "${printed}")
+    return()
+endif()
+file(READ "${ROOT}/${EXPECTED}" expected)
+if(NOT printed STREQUAL expected)
+    message(FATAL_ERROR "puppetri ${ARGUMENTS} prints\n${printed}\nbut ${EXPECTED} says\n${expected}")
+endif()
