@@ -63,8 +63,7 @@ Lowered lowered(const Formula& f, const HostLowering* host) {
 
 }  // namespace
 
-Structure::Structure(const net::Net& net, const net::NetDraft& draft)
-    : net_(net), draft_(draft), plain_(proof::plain(net)) {
+Structure::Structure(const net::Net& net) : net_(net), plain_(proof::plain(net)) {
     emptied_.resize(net.place_count(), 0);
     for (const net::Special& s : net.tables().specials) {
         for (const net::ArcTable& arc : s.arcs) {
@@ -81,11 +80,8 @@ Structure::Structure(const net::Net& net, const net::NetDraft& draft)
 std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLowering* host,
                                                 const proof::Budget& budget) {
     if (asked.question == Question::kOneOfEach) {
-        const auto lowered_draft = net::lower(draft_);
-        const bool same = lowered_draft && lowered_draft->places.size() == net_.place_count();
         const proof::IdentityAnswer answer =
-            same ? proof::conserves_identity(*lowered_draft, asked.places, asked.attributes)
-                 : proof::IdentityAnswer{};
+            proof::conserves_identity(net_, asked.places, asked.attributes);
         if (!answer.conserved) {
             return std::nullopt;
         }
@@ -134,6 +130,9 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
 // round, they do not either. Nothing is said of nets with raised events, whose occurrences an
 // instant may multiply.
 bool Structure::instants_end() const {
+    if (proof::instants_end(net_)) {
+        return true;
+    }
     const net::NetTables& tables = net_.tables();
     const std::uint32_t count = net_.transition_count();
     const auto waits = [&](std::uint32_t p) {
@@ -233,9 +232,9 @@ std::optional<StructuralProof> Structure::by_theorem(const proof::Budget& budget
     }
     if (!live_) {
         const proof::TimedLiveness answer = proof::timed_liveness(net_, budget);
-        live_ = answer.live && !answer.needs_clean_ends &&
-                (!answer.needs_time_goes_on || instants_end());
-        theorem_ = answer.reason;
+        live_ = answer.live || (answer.live_unless_stopped && !answer.needs_clean_ends &&
+                                (!answer.needs_time_goes_on || instants_end()));
+        theorem_ = answer.theorem;
     }
     if (!*live_) {
         return std::nullopt;

@@ -22,8 +22,8 @@ struct StructuralProof {
 
 class Structure {
  public:
-    // `draft`: what the net was compiled from. Both outlive it.
-    Structure(const net::Net& net, const net::NetDraft& draft);
+    // The net outlives it.
+    explicit Structure(const net::Net& net);
     // Nothing: these methods cannot say.
     std::optional<StructuralProof> prove(const Asked& asked, const HostLowering* host,
                                          const proof::Budget& budget);
@@ -35,7 +35,6 @@ class Structure {
     bool instants_end() const;
 
     const net::Net& net_;
-    const net::NetDraft& draft_;
     proof::Plain plain_;
     std::vector<std::uint8_t> emptied_;
     std::vector<std::string_view> names_;

@@ -50,7 +50,7 @@ class Prover {
           play_(play),
           options_(options),
           started_(now_s()),
-          structure_(net_, draft_) {
+          structure_(net_) {
         if (play_ != nullptr) {
             host_ = std::make_unique<FigureLowering>(net_, *play_);
         }
