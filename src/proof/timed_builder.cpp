@@ -98,7 +98,8 @@ Ended TimedBuilder::look() {
     const std::uint64_t held =
         graph_.bytes() + g.flags.capacity() + 24 * std::uint64_t{g.edges.items.capacity()} +
         8 * (std::uint64_t{g.atoms.may.capacity()} + g.atoms.must.capacity() +
-             graph_.waits.waiting.capacity() + graph_.waits.stirred.capacity());
+             graph_.waits.waiting.capacity() + graph_.waits.stirred.capacity()) +
+        row_.size() * (sizeof(Row) + 8 * std::uint64_t{wait_words()});
     return meter_.look(states, g.edges.items.size() + row_.size(), states - g.edges.size(), held);
 }
 

@@ -40,6 +40,17 @@ std::string TimedGraph::words(std::uint32_t state) const {
     const auto add = [&text](const std::string& part) {
         text += (text.empty() ? "" : ", ") + part;
     };
+    // What is left of the tokens that wait; where time is exact, now is 0.
+    std::vector<std::vector<std::int64_t>> left(s.counts.size());
+    if (states->form == ClockForm::kExact) {
+        for (const Pending& p : s.heap.items) {
+            const std::uint32_t i = p.what & Pending::kIndexMask;
+            const std::uint32_t kind = p.what & ~Pending::kIndexMask;
+            if (kind != Pending::kDelay) {
+                left[kind == Pending::kToken ? n.rich[i].place : i].push_back(p.at);
+            }
+        }
+    }
     for (std::uint32_t p = 0; p < s.counts.size(); ++p) {
         const Counts c = s.counts[p];
         if (c.total == 0) {
@@ -48,8 +59,13 @@ std::string TimedGraph::words(std::uint32_t state) const {
         std::string part = c.total == 1 ? "" : std::to_string(c.total) + " ";
         part += n.places.path(p);
         if (c.ready != c.total) {
-            part += c.ready == 0 ? " (not ready)"
-                                 : " (" + std::to_string(c.total - c.ready) + " not ready)";
+            part += c.ready == 0 ? " (not ready"
+                                 : " (" + std::to_string(c.total - c.ready) + " not ready";
+            std::sort(left[p].begin(), left[p].end());
+            for (std::size_t i = 0; i < left[p].size(); ++i) {
+                part += (i == 0 ? ": " : ", ") + time_in_words(left[p][i]);
+            }
+            part += ")";
         }
         add(part);
     }
@@ -57,7 +73,16 @@ std::string TimedGraph::words(std::uint32_t state) const {
         text = "nothing";
     }
     for (std::uint32_t d = 0; d < s.data.size(); ++d) {
-        const ValueKind kind = n.declarations.data[d].type.kind;
+        const ValueType type = n.declarations.data[d].type;
+        const ValueKind kind = type.kind;
+        if (kind == ValueKind::kEnum && type.enumeration < n.declarations.enums.size()) {
+            const auto& values = n.declarations.enums[type.enumeration].values;
+            if (s.data[d] >= 0 && s.data[d] < static_cast<Value>(values.size())) {
+                add(std::string(n.data.path(d)) + " = " +
+                    values[static_cast<std::size_t>(s.data[d])]);
+                continue;
+            }
+        }
         add(std::string(n.data.path(d)) + " = " +
             (kind == ValueKind::kBool   ? (s.data[d] != 0 ? "true" : "false")
              : kind == ValueKind::kReal ? number_to_text(real_of_value(s.data[d]))

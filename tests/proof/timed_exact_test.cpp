@@ -38,6 +38,8 @@ TEST_CASE("the walk of three steps has 11 states, with exact time and without [o
             CHECK(g->graph.dead(s) == ((g->graph.flags[s] & Graph::kFinal) != 0));
         }
     }
+    CHECK(ready.words(3) == "P4 (not ready), 2 P3");
+    CHECK(timed.words(5) == "P6 (not ready: 0.8333333333333334 s), 3 P3");
 }
 
 TEST_CASE("every shortest path of the ball game is a script that the engine plays [witness]") {

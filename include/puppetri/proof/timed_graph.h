@@ -117,7 +117,7 @@ class TimedGraph {
 
     net::Counts tokens(std::uint32_t state, net::PlaceIndex place) const;
     Value datum(std::uint32_t state, net::DatumIndex datum) const;
-    // "P2 (not ready), 3 P3, x = 2; 0.5 s to go": what is marked, in words.
+    // "P2 (not ready: 0.5 s), 3 P3, x = 2": what is marked, in words.
     std::string words(std::uint32_t state) const;
     // "t3 fires", "0.5 s pass", "kick occurs".
     std::string words_of_edge(std::uint32_t edge) const;
