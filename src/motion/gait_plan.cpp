@@ -42,7 +42,8 @@ constexpr double kSlips = 0.9981, kStanding = 0.9969;
 // is long), and at rest.
 constexpr double kEasySwing_s = 0.32, kHurry_s = 0.035, kEasy_m_s2 = 3.2;
 constexpr double kMostLag_m = 0.09, kMostSlowLead_m = 0.04, kMostRestLag_m = 0.09;
-constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down
+constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down. Less
+constexpr double kLessPerDuty = 1.15;    // for each duty above 0.62: both feet are down that long
 constexpr double kRollFlat_s = 0.2;      // of the foot that just landed
 constexpr double kCatch_s = 0.16;        // to put down a foot that should already stand
 
@@ -561,8 +562,10 @@ class Planner {
 }  // namespace
 
 double longest_stroke_m(const figure::Figure& figure, double duty_factor) {
-    return duty_factor < kRunsBelow ? longest_run_stroke_m(figure, duty_factor)
-                                    : kLongestStroke * figure.leg_m;
+    return duty_factor < kRunsBelow
+               ? longest_run_stroke_m(figure, duty_factor)
+               : (kLongestStroke - kLessPerDuty * clamp(duty_factor - 0.62, 0, 0.28)) *
+                     figure.leg_m;
 }
 
 double plan_duration_s(const MotionContext& context, const StepSpec& spec) {

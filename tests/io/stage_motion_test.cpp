@@ -20,9 +20,9 @@ namespace {
 
 constexpr const char* kWalks[] = {"02_walk/figure.pup", "02_walk/limbs.pup", "02_walk/legs.pup",
                                   "02_walk/twice.pup", "02_walk/duty.pup"};
-constexpr const char* kGames[] = {"03_ball/ball.pup",      "03_ball/figure5.pup",
-                                  "03_ball/impatient.pup", "03_ball/no_ball.pup",
-                                  "03_ball/two_balls.pup", "03_ball/waits.pup"};
+constexpr const char* kGames[] = {
+    "01_toss/toss.pup",    "03_ball/ball.pup",      "03_ball/figure5.pup", "03_ball/impatient.pup",
+    "03_ball/no_ball.pup", "03_ball/two_balls.pup", "03_ball/waits.pup"};
 
 bool walks(const Stretch& s) {
     return s.movement == "step" || s.movement == "half_step" || s.movement == "walk" ||
@@ -184,7 +184,8 @@ TEST_CASE(
             {
                 INFO(test::report(m));
                 check_always(m);
-                CHECK(check_swings(m, stretches) >= 3);
+                CHECK(check_swings(m, stretches) >=
+                      (name == std::string("01_toss/toss.pup") ? 0 : 3));
             }
             // Throwing and catching leaves what is not the arms slow.
             for (const Stretch& s : stretches) {

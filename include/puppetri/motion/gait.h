@@ -36,7 +36,8 @@ double longest_stroke_m(const figure::Figure& figure, double duty_factor);
 // Events  "foot_off" and "foot_strike" of the legs. Phases: support and swing of both legs.
 // Needs   stroke_m >= 0, duration_s > 0.
 // Gives   a pelvis at most 0.1 m off the formula, and feet that never slide: a stroke beyond what
-//         this figure's legs can do (0.87 of the leg, 43 % of the height, in a walk) is shortened.
+//         this figure's legs can do (0.87 of the leg, 43 % of the height, in a walk; less with a
+//         long double support) is shortened.
 // Cost    a third of a millisecond to prepare; a sample allocates nothing.
 MovementPtr make_step(const MotionContext& context, const StepSpec& spec);
 
