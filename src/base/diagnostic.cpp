@@ -54,6 +54,34 @@ std::string without_control_characters(std::string line) {
     return line;
 }
 
+// A stretch of a line around a column. Lines that people write are shown whole; machines write
+// files on one line of megabytes.
+struct Excerpt {
+    std::string line;
+    std::uint32_t column = 1;  // in `line`
+};
+Excerpt excerpt_of(const std::string& line, std::uint32_t column) {
+    constexpr std::uint32_t kWidest = 300, kBefore = 60, kAfter = 100;
+    if (line.size() <= kWidest) {
+        return {line, column};
+    }
+    const std::uint32_t from = column > kBefore ? column - kBefore : 1;
+    const auto is_first = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80; };
+    Excerpt out{from > 1 ? "..." : "", column - from + (from > 1 ? 4 : 1)};
+    std::uint32_t at = 0;
+    for (const char c : line) {
+        at += is_first(c) ? 1 : 0;
+        if (at > column + kAfter) {
+            out.line += "...";
+            break;
+        }
+        if (at >= from) {
+            out.line += c;
+        }
+    }
+    return out;
+}
+
 std::string location_of(const SourceSpan& where) {
     if (where.line == 0) {
         return where.file.empty() ? "" : where.file + ": ";
@@ -85,12 +113,13 @@ std::string format_diagnostic(const Diagnostic& d, const std::string& source_lin
     if (!source_line.empty() && d.where.line != 0) {
         const std::string number = std::to_string(d.where.line);
         const std::string margin(std::max<std::size_t>(6, number.size()), ' ');
-        const std::uint32_t width = count_code_points(source_line);
-        const std::uint32_t rest = width >= d.where.column ? width - d.where.column + 1 : 1;
+        const Excerpt shown = excerpt_of(source_line, d.where.column);
+        const std::uint32_t width = count_code_points(shown.line);
+        const std::uint32_t rest = width >= shown.column ? width - shown.column + 1 : 1;
         const std::uint32_t length = std::clamp<std::uint32_t>(d.where.length, 1, rest);
         text += margin.substr(number.size()) + number + " | " +
-                without_control_characters(source_line) + '\n';
-        text += margin + " | " + indent_to(source_line, d.where.column) + paint(look.colour) + '^' +
+                without_control_characters(shown.line) + '\n';
+        text += margin + " | " + indent_to(shown.line, shown.column) + paint(look.colour) + '^' +
                 std::string(length - 1, '~') + paint(kPlain) + '\n';
     }
     if (!d.remedy.empty()) {

@@ -287,7 +287,7 @@ class Unfolding {
         const net::TransitionIndex index{static_cast<std::uint32_t>(out_.draft.transitions.size())};
         std::uint64_t arcs = 0;
         for (const Arc& arc : arcs_of_[n]) {
-            if (!add_arcs(arc, binding, index, t, arcs)) {
+            if (!add_arcs(arc, binding, t, arcs)) {
                 return;
             }
         }
@@ -300,7 +300,7 @@ class Unfolding {
     }
 
     bool add_arcs(const Arc& arc, const std::vector<std::uint32_t>& binding,
-                  net::TransitionIndex index, net::TransitionDraft& t, std::uint64_t& arcs) {
+                  net::TransitionDraft& t, std::uint64_t& arcs) {
         const PnmlArc& raw_arc = document_.arcs[arc.arc];
         const std::string element = "arc " + raw_arc.id;
         ColourBag bag;
@@ -329,25 +329,17 @@ class Unfolding {
                 stopped_ = true;
                 return false;
             }
-            ArcLook look{.transition = index,
-                         .is_output = raw_arc.is_output,
-                         .id = raw_arc.id,
-                         .look = look_of(raw_arc.xml, raw_arc.page, raw_arc.order, "")};
-            const SourceSpan where = document_.text.where(raw_arc.xml);
+            // Without position and look: there are too many of them, and the node's say enough.
             if (raw_arc.is_output) {
-                look.number = static_cast<std::uint32_t>(t.outputs.size());
-                t.outputs.push_back({.place = places[value], .weight = weight, .where = where});
+                t.outputs.push_back({.place = places[value], .weight = weight});
             } else {
-                look.number = static_cast<std::uint32_t>(t.inputs.size());
                 t.inputs.push_back(
                     {.kind = raw_arc.type == PnmlArcType::kInhibitor ? net::ArcKind::kUnless
                              : raw_arc.type == PnmlArcType::kRead    ? net::ArcKind::kRead
                                                                      : net::ArcKind::kTake,
                      .place = places[value],
-                     .weight = weight,
-                     .where = where});
+                     .weight = weight});
             }
-            out_.look.arcs.push_back(std::move(look));
             if (++arcs + elements_ > limits_.elements) {
                 return count(arcs, raw_arc.xml, element);
             }

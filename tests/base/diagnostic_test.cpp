@@ -39,6 +39,22 @@ TEST_CASE("control characters of a hostile line do not reach the terminal [hosti
     CHECK(text.find('\x07') == std::string::npos);
 }
 
+TEST_CASE("of a line of megabytes only what is around the column is shown [hostile]") {
+    std::string line(1'000'000, 'x');
+    line[499'999] = 'o';
+    const std::string text = format_diagnostic(
+        {Severity::kError, "code", {"f", 1, 500'000, 1}, "", "wrong", "mend it"}, line, false);
+    CHECK(text.size() < 600);
+    // The caret stands below the column.
+    const std::size_t first = text.find('\n') + 1, second = text.find('\n', first) + 1;
+    CHECK(text.find('o', first) - first == text.find('^', second) - second);
+    // Near the beginning nothing is cut before it.
+    const std::string early = format_diagnostic(
+        {Severity::kError, "code", {"f", 1, 3, 2}, "", "wrong", "mend it"}, "ab" + line, false);
+    CHECK(early.find(" | abxx") != std::string::npos);
+    CHECK(early.find(" |   ^~") != std::string::npos);
+}
+
 TEST_CASE("without a line only the file is named, without a file nothing [unit]") {
     Diagnostic d = example();
     d.where.line = 0;

@@ -23,7 +23,7 @@ const char* name_of(NetFormat format);
 // "file-too-large" or "net-too-large".
 struct NetLimits {
     std::uint64_t bytes = 100'000'000;    // of the file
-    std::uint64_t elements = 10'000'000;  // places, transitions and arcs together, after unfolding
+    std::uint64_t elements = 5'000'000;   // places, transitions and arcs together, after unfolding
     std::uint64_t bindings = 50'000'000;  // of variables tried while unfolding a coloured net
     std::uint32_t nesting = 200;          // of pages, of terms
 };
