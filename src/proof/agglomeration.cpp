@@ -56,6 +56,9 @@ bool look_around(ReductionNet& net, std::uint32_t p, Around& out) {
 }
 
 bool inhibits(ReductionNet& net, std::uint32_t place) {
+    if (!net.has_limits()) {
+        return false;
+    }
     const std::vector<std::uint32_t>& users = net.at(place);
     return std::any_of(users.begin(), users.end(), [&](std::uint32_t t) {
         return net.arc(t, place).limit != ReductionArc::kNoLimit;
@@ -263,6 +266,9 @@ template <class Try>
 bool at_every_place(ReductionNet& net, Try attempt) {
     bool any = false;
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+        if ((p & 63) == 0 && net.out_of_budget()) {
+            return any;
+        }
         if (net.place_alive[p] != 0 && net.keep[p] == 0) {
             any = attempt(net, p) || any;
         }

@@ -60,7 +60,7 @@ class PumpSearch {
         seen_.insert(net_.initial);
         for (std::uint64_t steps = 0; !path_.empty(); ++steps) {
             if ((steps & 255) == 0 &&
-                meter_.look(seen_.size(), steps, path_.size(), seen_.bytes()) != Ended::kDone) {
+                meter_.look(seen_.size(), steps, path_.size(), bytes()) != Ended::kDone) {
                 return answer;
             }
             Step& top = path_.back();
@@ -98,6 +98,11 @@ class PumpSearch {
         std::uint64_t tokens = 0;
         std::uint32_t next = 0;  // transition to try
     };
+
+    std::uint64_t bytes() const {
+        return seen_.bytes() +
+               path_.size() * (sizeof(Step) + 4 * std::uint64_t{net_.place_count()});
+    }
 
     // True: it has more tokens than all ancestors.
     bool enter(Marking marking) {

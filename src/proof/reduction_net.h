@@ -30,7 +30,8 @@ struct ReductionTransition {
 
 class ReductionNet {
  public:
-    ReductionNet(const PlainNet& net, const ReductionGoal& goal);
+    // The budget outlives it.
+    ReductionNet(const PlainNet& net, const ReductionGoal& goal, const Budget& budget);
 
     std::vector<ReductionTransition> transitions;
     std::vector<std::uint32_t> initial;
@@ -39,6 +40,9 @@ class ReductionNet {
     std::vector<std::uint32_t> prefix;
     std::vector<std::vector<std::uint32_t>> rest;  // the latest last
     std::uint32_t applied = 0;
+
+    bool out_of_budget() { return meter_.look(applied, 0, 0, 0) != Ended::kDone; }
+    bool has_limits() const { return has_limits_; }
 
     std::uint32_t place_count() const { return static_cast<std::uint32_t>(initial.size()); }
     // Living transitions with an arc at the place, ascending.
@@ -58,6 +62,9 @@ class ReductionNet {
     ReductionArc* find(std::uint32_t transition, std::uint32_t place);
     void drop_if_empty(std::uint32_t t, std::uint32_t p);
     std::vector<std::vector<std::uint32_t>> at_;
+    std::vector<std::uint8_t> stale_;  // per place: `at_` may hold transitions that left it
+    bool has_limits_ = false;
+    Meter meter_;
 };
 
 // The rules; each applies itself wherever it can and says whether it did anything.

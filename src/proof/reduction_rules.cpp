@@ -16,29 +16,38 @@ namespace puppetri::proof {
 // such places too (an empty siphon). Or a place that can never be as full as needed, or never as
 // empty: nobody adds to it, or nobody takes from it.
 bool remove_never_enabled(ReductionNet& net) {
+    const std::size_t count = net.transitions.size();
     std::vector<std::uint8_t> can_mark(net.place_count(), 0), grows(net.place_count(), 0),
-        falls(net.place_count(), 0), fires(net.transitions.size(), 0);
+        falls(net.place_count(), 0), fires(count, 0);
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
         can_mark[p] = net.initial[p] > 0 ? 1 : 0;
     }
-    for (bool more = true; more;) {
-        more = false;
-        for (std::uint32_t i = 0; i < net.transitions.size(); ++i) {
-            const ReductionTransition& t = net.transitions[i];
-            if (!t.alive || fires[i] != 0 ||
-                !std::all_of(t.arcs.begin(), t.arcs.end(), [&](const ReductionArc& a) {
-                    return a.need == 0 || can_mark[a.place] != 0;
-                })) {
+    std::vector<std::uint32_t> missing(count, 0), open;  // places that it needs and that are empty
+    for (std::uint32_t i = 0; i < count; ++i) {
+        for (const ReductionArc& a : net.transitions[i].arcs) {
+            missing[i] += a.need > 0 && can_mark[a.place] == 0 ? 1 : 0;
+        }
+        if (net.transitions[i].alive && missing[i] == 0) {
+            open.push_back(i);
+        }
+    }
+    while (!open.empty()) {
+        const std::uint32_t i = open.back();
+        open.pop_back();
+        fires[i] = 1;
+        for (const ReductionArc& a : net.transitions[i].arcs) {
+            falls[a.place] |= a.change < 0 ? 1 : 0;
+            if (a.change <= 0) {
                 continue;
             }
-            fires[i] = 1;
-            more = true;
-            for (const ReductionArc& a : t.arcs) {
-                if (a.change > 0) {
-                    can_mark[a.place] = 1;
-                    grows[a.place] = 1;
-                } else if (a.change < 0) {
-                    falls[a.place] = 1;
+            grows[a.place] = 1;
+            if (can_mark[a.place] != 0) {
+                continue;
+            }
+            can_mark[a.place] = 1;
+            for (const std::uint32_t u : net.at(a.place)) {
+                if (net.arc(u, a.place).need > 0 && --missing[u] == 0) {
+                    open.push_back(u);
                 }
             }
         }
@@ -217,6 +226,8 @@ std::vector<std::pair<std::uint32_t, std::int64_t>> changes(const ReductionTrans
 
 }  // namespace
 
+constexpr std::uint64_t kMostComparisons = 10'000'000;
+
 // u does what t does and is enabled only if t is: u goes, if t counts for death whenever u does.
 // A transition that changes nothing goes if the question is reachability; if it is death, when some
 // other one is enabled whenever it is. (Runs may stay with it for ever: not for stuttering.)
@@ -257,7 +268,10 @@ bool remove_dominated_transitions(ReductionNet& net) {
         }
         first = last;
     }
-    if (net.preserves == Preserves::kDeadlock) {
+    // Those that change nothing are first in this order, each compared with all.
+    const auto silent = static_cast<std::uint64_t>(
+        std::count_if(all.begin(), all.end(), [](const auto& a) { return a.first.empty(); }));
+    if (net.preserves == Preserves::kDeadlock && silent * all.size() <= kMostComparisons) {
         for (const auto& [change, u] : all) {
             if (!change.empty() || !net.transitions[u].alive) {
                 continue;
@@ -323,10 +337,11 @@ bool remove_beside_always_enabled(ReductionNet& net) {
     if (always == net.transitions.end()) {
         return false;
     }
+    const auto stays = static_cast<std::uint32_t>(always - net.transitions.begin());
     bool any = false;
-    for (ReductionTransition& t : net.transitions) {
-        if (t.alive && &t != &*always) {
-            t.alive = false;
+    for (std::uint32_t t = 0; t < net.transitions.size(); ++t) {
+        if (net.transitions[t].alive && t != stays) {
+            net.remove_transition(t);
             ++net.applied;
             any = true;
         }

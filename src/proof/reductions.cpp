@@ -51,12 +51,15 @@ void keep_presets(const PlainNet& net, std::span<const std::uint32_t> transition
     }
 }
 
-ReductionNet::ReductionNet(const PlainNet& net, const ReductionGoal& goal)
+ReductionNet::ReductionNet(const PlainNet& net, const ReductionGoal& goal, const Budget& budget)
     : initial(net.initial),
       place_alive(net.place_count(), 1),
       keep(goal.keep),
       preserves(goal.preserves),
-      at_(net.place_count()) {
+      at_(net.place_count()),
+      stale_(net.place_count(), 0),
+      has_limits_(net.has_inhibitors()),
+      meter_(budget, "reductions") {
     keep.resize(net.place_count(), 0);
     for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
         std::vector<ReductionArc> arcs;
@@ -94,6 +97,10 @@ ReductionNet::ReductionNet(const PlainNet& net, const ReductionGoal& goal)
 
 const std::vector<std::uint32_t>& ReductionNet::at(std::uint32_t place) {
     std::vector<std::uint32_t>& list = at_[place];
+    if (stale_[place] == 0) {
+        return list;
+    }
+    stale_[place] = 0;
     std::erase_if(
         list, [&](std::uint32_t t) { return !transitions[t].alive || find(t, place) == nullptr; });
     return list;
@@ -120,7 +127,12 @@ void ReductionNet::add(ReductionTransition t) {
     transitions.push_back(std::move(t));
 }
 
-void ReductionNet::remove_transition(std::uint32_t t) { transitions[t].alive = false; }
+void ReductionNet::remove_transition(std::uint32_t t) {
+    transitions[t].alive = false;
+    for (const ReductionArc& a : transitions[t].arcs) {
+        stale_[a.place] = 1;
+    }
+}
 
 void ReductionNet::remove_place(std::uint32_t p) {
     const std::vector<std::uint32_t> users = at(p);
@@ -128,9 +140,11 @@ void ReductionNet::remove_place(std::uint32_t p) {
         std::erase_if(transitions[t].arcs, [&](const ReductionArc& a) { return a.place == p; });
     }
     place_alive[p] = 0;
+    at_[p].clear();
 }
 
 void ReductionNet::drop_if_empty(std::uint32_t t, std::uint32_t p) {
+    stale_[p] = 1;
     std::erase_if(transitions[t].arcs,
                   [&](const ReductionArc& a) { return a.place == p && a.empty(); });
 }
@@ -227,7 +241,7 @@ Reduction reduce(const PlainNet& net, const ReductionGoal& goal, const Budget& b
     if (net.has_levels || !within_range(net)) {
         return unchanged(net);
     }
-    ReductionNet work(net, goal);
+    ReductionNet work(net, goal, budget);
     if (goal.preserves == Preserves::kReachability) {
         // What cannot influence the kept places goes first.
         std::vector<std::uint32_t> kept;
@@ -258,14 +272,13 @@ Reduction reduce(const PlainNet& net, const ReductionGoal& goal, const Budget& b
             }
         }
     }
-    Meter meter(budget, "reductions");
     for (bool changed = true; changed;) {
         changed = false;
         for (const auto rule :
              {remove_never_enabled, simplify_monotone_places, remove_untested_places,
               remove_implied_places, remove_dominated_transitions, remove_eaters,
               remove_beside_always_enabled, agglomerate_after, agglomerate_before}) {
-            if (meter.look(work.applied, 0, 0, 0) != Ended::kDone) {
+            if (work.out_of_budget()) {
                 return work.finish(net);
             }
             changed = rule(work) || changed;
