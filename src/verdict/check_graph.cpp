@@ -398,7 +398,8 @@ class Checker {
                 return f;
             }
         }
-        if (graph_.exact) {
+        const std::vector<std::uint8_t>& c = view_.timed->coincidental;
+        if (graph_.exact && std::find(c.begin(), c.end(), 1) == c.end()) {
             return holds();
         }
         Nodes none(p.size(), 0);

@@ -10,14 +10,15 @@
 #include <optional>
 #include <utility>
 
+#include "asked_rules.h"
 #include "builtin_rules.h"
 #include "by_structure.h"
 #include "part.h"
 #include "puppetri/net/tables.h"
-#include "puppetri/proof/components.h"
 #include "puppetri/proof/coverability.h"
-#include "puppetri/proof/slice.h"
 #include "puppetri/verdict/sample.h"
+#include "questions.h"
+#include "splitting.h"
 #include "temporal_rule.h"
 
 namespace puppetri::verdict {
@@ -72,6 +73,10 @@ class Prover {
         }
         for (const std::vector<std::uint32_t>& group : groups()) {
             by_graphs(group);
+        }
+        if (!left_over_.empty()) {
+            Part all(net_, theatre_, host_.get());
+            examine(all, std::exchange(left_over_, {}));
         }
         std::vector<Verdict> out;
         for (Work& w : works_) {
@@ -136,10 +141,6 @@ class Prover {
 
     // ---- parts ----
 
-    static bool whole(const Asked& asked) {
-        return asked.question != Question::kRule || reads_whole_net(asked.rule);
-    }
-
     // Open rules by the parts of the net that they read; what reads everything comes together.
     std::vector<std::vector<std::uint32_t>> groups() {
         std::vector<std::vector<std::uint32_t>> out;
@@ -152,23 +153,27 @@ class Prover {
         if (open.empty()) {
             return out;
         }
-        split();
-        if (parts_.count <= 1) {
+        std::vector<const Asked*> rules;
+        for (const std::uint32_t i : open) {
+            rules.push_back(&works_[i].asked);
+        }
+        parts_ = Splitting(net_, draft_, play_, rules);
+        if (parts_.count() <= 1) {
             part_of_group_.push_back(kWhole);
             out.push_back(std::move(open));
             return out;
         }
-        std::vector<std::vector<std::uint32_t>> of_part(parts_.count);
+        std::vector<std::vector<std::uint32_t>> of_part(parts_.count());
         std::vector<std::uint32_t> everywhere;
         for (const std::uint32_t i : open) {
-            const auto read = parts_read(works_[i].asked);
+            const auto read = parts_.read_by(works_[i].asked);
             if (read.size() == 1) {
                 of_part[read[0]].push_back(i);
             } else {
                 everywhere.push_back(i);
             }
         }
-        for (std::uint32_t p = 0; p < parts_.count; ++p) {
+        for (std::uint32_t p = 0; p < parts_.count(); ++p) {
             if (!of_part[p].empty()) {
                 part_of_group_.push_back(p);
                 out.push_back(std::move(of_part[p]));
@@ -181,129 +186,13 @@ class Prover {
         return out;
     }
 
-    // The lowered draft, if its numbers are those of the net.
-    void split() {
-        auto lowered = net::lower(draft_);
-        parts_.count = 1;
-        if (!lowered || lowered->places.size() != net_.place_count() ||
-            lowered->transitions.size() != net_.transition_count()) {
-            return;
-        }
-        for (std::uint32_t p = 0; p < net_.place_count(); ++p) {
-            if (lowered->places[p].path != net_.place(net::PlaceIndex{p}).path) {
-                return;
-            }
-        }
-        for (std::uint32_t t = 0; t < net_.transition_count(); ++t) {
-            if (lowered->transitions[t].path != net_.transition(net::TransitionIndex{t}).path) {
-                return;
-            }
-        }
-        lowered_ = std::move(*lowered);
-        parts_ = proof::components(lowered_);
-        // Parts that a rule or an end compares are one.
-        std::vector<std::uint32_t> to(parts_.count);
-        for (std::uint32_t i = 0; i < parts_.count; ++i) {
-            to[i] = i;
-        }
-        const auto root = [&](std::uint32_t i) {
-            while (to[i] != i) {
-                i = to[i] = to[to[i]];
-            }
-            return i;
-        };
-        const auto join = [&](const std::vector<std::uint32_t>& list) {
-            for (const std::uint32_t i : list) {
-                to[root(i)] = root(list[0]);
-            }
-        };
-        for (const Work& w : works_) {
-            if (!w.done && !whole(w.asked)) {
-                join(parts_read(w.asked));
-            }
-        }
-        net::Rule ends;
-        for (const net::NetTables::FinalMarking& f : net_.tables().finals) {
-            ends.operands.push_back(f.condition);
-        }
-        Asked asked;
-        asked.rule = ends;
-        join(parts_read(asked));
-        std::vector<std::uint32_t> number(parts_.count, kWhole);
-        std::uint32_t count = 0;
-        for (std::uint32_t i = 0; i < parts_.count; ++i) {
-            if (root(i) == i) {
-                number[i] = count++;
-            }
-        }
-        for (std::uint32_t& p : parts_.of_place) {
-            p = number[root(p)];
-        }
-        for (std::uint32_t& t : parts_.of_transition) {
-            t = number[root(t)];
-        }
-        parts_.count = count;
-    }
-
-    std::vector<std::uint32_t> parts_read(const Asked& asked) const {
-        std::vector<std::uint32_t> out;
-        if (whole(asked)) {
-            return out;
-        }
-        const proof::SliceRoots roots = proof::roots_of(asked.rule);
-        for (const std::uint32_t p : roots.places) {
-            out.push_back(parts_.of_place[p]);
-        }
-        for (const std::uint32_t t : roots.transitions) {
-            out.push_back(parts_.of_transition[t]);
-        }
-        // Whoever reads data, events or figures is left with the whole net unless places say more.
-        if (!roots.data.empty() || !roots.events.empty()) {
-            for (std::uint32_t t = 0; t < parts_.of_transition.size(); ++t) {
-                out.push_back(parts_.of_transition[t]);
-            }
-        }
-        for (const net::Formula& f : asked.rule.operands) {
-            for (const net::Formula::Node& n : f.nodes) {
-                if (n.op == net::FormulaOp::kHost) {
-                    add_figures(n.index, out);
-                }
-            }
-        }
-        std::sort(out.begin(), out.end());
-        out.erase(std::unique(out.begin(), out.end()), out.end());
-        return out;
-    }
-    // All parts with movements of the actor or the prop that the atom speaks of.
-    void add_figures(std::uint32_t atom, std::vector<std::uint32_t>& out) const {
-        const std::vector<net::HostAtom>& atoms = net_.declarations().host_atoms;
-        if (play_ == nullptr || atom >= atoms.size()) {
-            return;
-        }
-        for (std::uint32_t p = 0; p < net_.place_count(); ++p) {
-            const net::ActionIndex action = net_.action(net::PlaceIndex{p});
-            if (!action.valid() || action.value >= play_->actions.size()) {
-                continue;
-            }
-            const motion::BoundCall& call = play_->actions[action.value].call;
-            const bool prop = call.subject.kind == motion::SubjectKind::kProp;
-            const std::string& who = prop ? play_->cast.props[call.subject.prop.value].name
-                                          : play_->cast.actors[call.subject.actor.value].name;
-            const motion::PropIndex claimed = claimed_prop(call);
-            if (atoms[atom].subject.starts_with(who + ".") || atoms[atom].subject == who ||
-                (claimed.valid() && atoms[atom].kind == net::HostAtom::Kind::kHolder)) {
-                out.push_back(parts_.of_place[p]);
-            }
-        }
-    }
-
     // ---- graphs ----
 
     void by_graphs(const std::vector<std::uint32_t>& group) {
         const std::uint32_t which = part_of_group_[next_group_++];
         std::unique_ptr<Part> part;
         if (which == kWhole) {
-            if (parts_.count > 1 && by_parts(group)) {
+            if (parts_.count() > 1 && by_parts(group)) {
                 return;
             }
             part = std::make_unique<Part>(net_, theatre_, host_.get());
@@ -317,14 +206,11 @@ class Prover {
     }
 
     std::unique_ptr<Part> make_part(std::uint32_t which, const std::vector<std::uint32_t>& group) {
-        // Rules that the language does not know travel as rules of the draft.
-        net::NetDraft draft = lowered_;
-        draft.rules.clear();
+        std::vector<net::Rule> rules;
         for (const std::uint32_t i : group) {
-            draft.rules.push_back(works_[i].asked.rule);
+            rules.push_back(works_[i].asked.rule);
         }
-        proof::DraftSlice slice = proof::component(draft, parts_, which);
-        return Part::of(std::move(slice.draft), theatre_, play_);
+        return Part::of(parts_.draft_of(which, std::move(rules)), theatre_, play_);
     }
 
     // Rules about the whole net, asked of each part: all parts keep them, or (for rest) one does.
@@ -332,7 +218,7 @@ class Prover {
         std::vector<std::uint32_t> rest;
         std::vector<Verdict> sums(group.size());
         std::vector<std::uint8_t> good(group.size(), 1), once(group.size(), 0);
-        for (std::uint32_t p = 0; p < parts_.count; ++p) {
+        for (std::uint32_t p = 0; p < parts_.count(); ++p) {
             auto part = make_part(p, {});
             if (part == nullptr) {
                 return false;
@@ -366,7 +252,7 @@ class Prover {
                 w.verdict.answer = Answer::kProved;
                 w.verdict.force = sums[k].force;
                 w.verdict.method =
-                    std::string("readiness graphs of ") + std::to_string(parts_.count) + " parts";
+                    std::string("readiness graphs of ") + std::to_string(parts_.count()) + " parts";
                 w.verdict.states = sums[k].states;
                 w.verdict.edges = sums[k].edges;
                 finish(w);
@@ -416,8 +302,7 @@ class Prover {
                     std::find_if(rules.begin(), rules.end(),
                                  [&](const net::Rule& r) { return r.path == own.rule.path; });
                 if (found == rules.end()) {
-                    works_[i].verdict.reason = "its part of the net could not be told";
-                    finish(works_[i]);
+                    left_over_.push_back(i);  // it speaks of what parts do not have
                     continue;
                 }
                 own.rule = *found;
@@ -482,34 +367,10 @@ class Prover {
             return false;
         }
         if (method == Method::kExact) {
-            return !inexact_durations(part.net());
+            return !inexact_durations(part.net(), theatre_.actions);
         }
         return true;
     }
-    bool inexact_durations(const net::Net& net) const {
-        const net::NetTables& tables = net.tables();
-        const auto inexact = [&](const net::DurationTable& d, std::uint32_t place) {
-            if (d.kind == net::DurationKind::kAuto) {
-                const net::ActionIndex a = place == net::kNoIndex
-                                               ? net::ActionIndex{}
-                                               : net.action(net::PlaceIndex{place});
-                return !a.valid() || a.value >= theatre_.actions.size() ||
-                       theatre_.actions[a.value].low != theatre_.actions[a.value].high;
-            }
-            return d.kind == net::DurationKind::kInterval ||
-                   d.kind == net::DurationKind::kDistribution;
-        };
-        for (std::uint32_t p = 0; p < net.place_count(); ++p) {
-            const std::uint32_t d = tables.place[p].duration;
-            if (d != net::kNoIndex && inexact(tables.durations[d], p)) {
-                return true;
-            }
-        }
-        return std::any_of(
-            tables.delays.begin(), tables.delays.end(),
-            [&](const net::DelayTable& d) { return inexact(d.duration, net::kNoIndex); });
-    }
-
     // What grows without end even without time will hardly end with it: not all is spent on it.
     const proof::TimedGraph* graph_of(Part& part, Method method, std::string& why) {
         constexpr std::uint64_t kFew = 20'000;
@@ -542,8 +403,7 @@ class Prover {
     // The finding of one method, and what it cost.
     std::optional<Finding> check(Part& part, std::uint32_t number, Method method, Verdict& v) {
         std::string why;
-        const proof::TimedGraph* graph = part.graph(
-            method, budget(method == Method::kReadiness ? 0.4 : 0.6), options_.outside_events, why);
+        const proof::TimedGraph* graph = graph_of(part, method, why);
         if (graph == nullptr) {
             if (v.reason.empty()) {
                 v.reason = std::string(name_of(method)) + ": " + why;
@@ -555,60 +415,12 @@ class Prover {
         const Asked& asked = part.asked(number);
         const GraphView view = part.view(method);
         if (asked.question != Question::kRule) {
-            return check_question(asked.question, view);
+            return check_question(asked.question, view, kMostEdges);
         }
         if (part.obligation(number).temporal) {
             return check_temporal(part.net(), part.obligation(number), view, budget(0.5));
         }
         return check_on_graph(part.net(), part.obligation(number), view, kMostEdges);
-    }
-
-    static Finding check_question(Question question, const GraphView& view) {
-        Finding f;
-        const proof::TimedGraph& timed = *view.timed;
-        f.product = make_product(timed.graph, nullptr, kMostEdges, timed.stops);
-        const Product& p = f.product;
-        f.targets.assign(p.size(), 0);
-        const bool covers = timed.graph.over && p.complete;
-        std::vector<std::uint32_t> at;  // states that stop for this reason
-        for (const proof::Stop& stop : timed.stops) {
-            if (concerns(question, stop.fault.code)) {
-                at.push_back(stop.state);
-                f.reason = stop.fault.message;
-            }
-        }
-        for (std::uint32_t n = 0; n < p.size(); ++n) {
-            f.targets[n] = std::find(at.begin(), at.end(), p.state[n]) != at.end() ? 1 : 0;
-        }
-        if (question == Question::kTimeGoesOn) {
-            std::vector<std::uint8_t> passes(p.targets.size(), 0);
-            for (std::uint64_t e = 0; e < p.targets.size(); ++e) {
-                passes[e] = p.label(e) == proof::Edge::kPass ? 1 : 0;
-            }
-            const Nodes all(p.size(), 1);
-            if (const auto cycle = endless(p, all, passes, nullptr)) {
-                for (const std::uint32_t n : *cycle) {
-                    f.targets[n] = 1;
-                }
-                f.reason = "one instant may last for ever: firings go round without time passing";
-                at.push_back(0);
-            }
-        }
-        if (!at.empty()) {
-            f.kind = Kind::kSuspect;
-            f.target = Target::kBroken;
-            return f;
-        }
-        if (covers) {
-            f.kind = Kind::kHolds;
-            f.product = {};
-        } else {
-            f.reason = timed.graph.ended != proof::Ended::kDone
-                           ? std::string("not all states were looked at: ") +
-                                 proof::name_of(timed.graph.ended)
-                           : "not all states were looked at";
-        }
-        return f;
     }
 
     void judge(Part& part, std::uint32_t number, Method method, Work& w) {
@@ -659,7 +471,7 @@ class Prover {
                 chase(part, *f, w, true);
                 if (w.verdict.answer != Answer::kUnknown) {
                     w.verdict.method = name_of(method);
-                } else if (possible && graph.graph.exact) {
+                } else if (possible && graph.graph.exact && !has_coincidences(graph)) {
                     w.verdict.answer = Answer::kProved;
                     w.verdict.method = name_of(method);
                     w.verdict.assumptions = graph.assumptions;
@@ -680,6 +492,14 @@ class Prover {
     void refuted(const Part& part, const proof::TimedGraph& graph, const Finding& f, Work& w,
                  Method method) {
         w.verdict.reason = f.reason;
+        for (const std::uint32_t e : f.path) {
+            if (e < graph.coincidental.size() && graph.coincidental[e] != 0) {
+                w.verdict.reason =
+                    "only by an exact coincidence of drawn times, which has probability 0: " +
+                    f.reason;
+                return;
+            }
+        }
         if (f.path.empty() && f.loop_from == kFar) {
             w.verdict.notes.push_back("no single run shows it: it is about choices");
         } else {
@@ -773,7 +593,7 @@ class Prover {
             }
             w.verdict.reason =
                 f.reason + ", but no run was found that does it (" + caught.reason + ")";
-            if (draws_times()) {
+            if (draws_times(net_)) {
                 PursueLimits any = limits(f);
                 any.coincide = true;
                 if (pursue(theatre, hunt, any).witness) {
@@ -794,17 +614,6 @@ class Prover {
             w.asked.question == Question::kRule && w.asked.rule.kind == net::RuleKind::kPossible;
         w.verdict.answer = possible ? Answer::kProved : Answer::kRefuted;
         w.verdict.reason = possible ? "" : f.reason;
-    }
-
-    // From distributions; intervals are all looked at.
-    bool draws_times() const {
-        const net::NetTables& tables = net_.tables();
-        const auto drawn = [](const net::DurationTable& d) {
-            return d.kind == net::DurationKind::kDistribution;
-        };
-        return std::any_of(tables.durations.begin(), tables.durations.end(), drawn) ||
-               std::any_of(tables.delays.begin(), tables.delays.end(),
-                           [&](const net::DelayTable& d) { return drawn(d.duration); });
     }
 
     // A run for each transition.
@@ -841,75 +650,11 @@ class Prover {
     Structure structure_;
     std::unique_ptr<FigureLowering> host_;
     std::vector<Work> works_;
-    net::NetDraft lowered_;
-    proof::Components parts_;
+    Splitting parts_;
+    std::vector<std::uint32_t> left_over_;
     std::vector<std::uint32_t> part_of_group_;
     std::size_t next_group_ = 0;
 };
-
-bool wanted(const std::string& path, const std::string& only) {
-    return only.empty() || path == only || path.starts_with(only + ".");
-}
-
-std::vector<Asked> chosen(std::vector<Asked> all, const ProveOptions& options) {
-    std::erase_if(all, [&](const Asked& a) {
-        return !wanted(a.rule.path, options.only) || (a.built_in && !options.built_in);
-    });
-    return all;
-}
-
-std::vector<Asked> all_rules(const scene::Scene& scene) {
-    std::vector<Asked> out;
-    bool freezes = false;
-    for (const net::Rule& rule : scene.rules()) {
-        Asked a;
-        a.rule = rule;
-        if (rule.kind == net::RuleKind::kNobodyFreezes) {
-            const std::size_t actors = scene.play.cast.actors.size();
-            freezes = freezes || rule.operands.size() == actors;
-            for (std::size_t i = 0; rule.subjects.empty() && rule.operands.size() == actors &&
-                                    a.rule.subjects.size() < actors;
-                 ++i) {
-                a.rule.subjects.push_back(scene.play.cast.actors[i].name);
-            }
-        }
-        out.push_back(std::move(a));
-    }
-    for (Asked& a : built_in_rules(scene.net, scene.draft, &scene.play)) {
-        if (!freezes || a.rule.kind != net::RuleKind::kNobodyFreezes) {
-            out.push_back(std::move(a));
-        }
-    }
-    return out;
-}
-
-std::vector<Asked> all_rules(const net::NetDraft& draft, const net::Net& net) {
-    std::vector<Asked> out;
-    for (const net::Rule& rule : net.declarations().rules) {
-        Asked a;
-        a.rule = rule;
-        out.push_back(std::move(a));
-    }
-    if (out.empty()) {
-        const auto ask = [&](const char* path, const char* caption, net::RuleKind kind) {
-            Asked a;
-            a.rule.path = path;
-            a.rule.caption = caption;
-            a.rule.kind = kind;
-            a.rule.count = kind == net::RuleKind::kBounded ? kNoCount : 1;
-            out.push_back(std::move(a));
-        };
-        ask("deadlock_free", "the net stops in ends only", net::RuleKind::kDeadlockFree);
-        ask("bounded", "no place grows without end", net::RuleKind::kBounded);
-        ask("quasi_live", "every transition can fire", net::RuleKind::kQuasiLive);
-        ask("live", "every transition can always fire again", net::RuleKind::kLive);
-        ask("reversible", "the start can always be reached again", net::RuleKind::kReversible);
-    }
-    for (Asked& a : built_in_rules(net, draft, nullptr)) {
-        out.push_back(std::move(a));
-    }
-    return out;
-}
 
 }  // namespace
 

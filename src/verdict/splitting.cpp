@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "splitting.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "puppetri/net/tables.h"
+#include "puppetri/proof/slice.h"
+#include "puppetri/verdict/figure_lowering.h"
+#include "puppetri/verdict/obligation.h"
+
+namespace puppetri::verdict {
+namespace {
+
+// The lowered draft numbers places and transitions as the net does.
+bool same_numbers(const net::NetDraft& lowered, const net::Net& net) {
+    if (lowered.places.size() != net.place_count() ||
+        lowered.transitions.size() != net.transition_count()) {
+        return false;
+    }
+    for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+        if (lowered.places[p].path != net.place(net::PlaceIndex{p}).path) {
+            return false;
+        }
+    }
+    for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
+        if (lowered.transitions[t].path != net.transition(net::TransitionIndex{t}).path) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+Splitting::Splitting(const net::Net& net, const net::NetDraft& draft, const stage::Play* play,
+                     const std::vector<const Asked*>& rules)
+    : net_(&net), play_(play) {
+    parts_.count = 1;
+    auto lowered = net::lower(draft);
+    if (!lowered || !same_numbers(*lowered, net)) {
+        return;
+    }
+    lowered_ = std::move(*lowered);
+    parts_ = proof::components(lowered_);
+    std::vector<std::uint32_t> to(parts_.count);
+    for (std::uint32_t i = 0; i < parts_.count; ++i) {
+        to[i] = i;
+    }
+    const auto root = [&](std::uint32_t i) {
+        while (to[i] != i) {
+            i = to[i] = to[to[i]];
+        }
+        return i;
+    };
+    const auto join = [&](const std::vector<std::uint32_t>& list) {
+        for (const std::uint32_t i : list) {
+            to[root(i)] = root(list[0]);
+        }
+    };
+    Asked ends;
+    for (const net::NetTables::FinalMarking& f : net.tables().finals) {
+        ends.rule.operands.push_back(f.condition);
+    }
+    const std::vector<std::uint32_t> of_ends = read_by(ends);
+    join(of_ends);
+    for (const Asked* asked : rules) {
+        if (reads_everything(*asked)) {
+            continue;
+        }
+        std::vector<std::uint32_t> read = read_by(*asked);
+        // Who rests in an end is not frozen.
+        if (asked->rule.kind == net::RuleKind::kNobodyFreezes) {
+            read.insert(read.end(), of_ends.begin(), of_ends.end());
+        }
+        join(read);
+    }
+    constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    std::vector<std::uint32_t> number(parts_.count, kNone);
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < parts_.count; ++i) {
+        if (root(i) == i) {
+            number[i] = count++;
+        }
+    }
+    for (std::uint32_t& p : parts_.of_place) {
+        p = number[root(p)];
+    }
+    for (std::uint32_t& t : parts_.of_transition) {
+        t = number[root(t)];
+    }
+    parts_.count = count;
+}
+
+bool Splitting::reads_everything(const Asked& asked) {
+    return asked.question != Question::kRule || reads_whole_net(asked.rule);
+}
+
+net::NetDraft Splitting::draft_of(std::uint32_t part, std::vector<net::Rule> rules) const {
+    net::NetDraft draft = lowered_;
+    draft.rules = std::move(rules);
+    return proof::component(draft, parts_, part).draft;
+}
+
+std::vector<std::uint32_t> Splitting::read_by(const Asked& asked) const {
+    std::vector<std::uint32_t> out;
+    if (reads_everything(asked)) {
+        return out;
+    }
+    const proof::SliceRoots roots = proof::roots_of(asked.rule);
+    for (const std::uint32_t p : roots.places) {
+        out.push_back(parts_.of_place[p]);
+    }
+    for (const std::uint32_t t : roots.transitions) {
+        out.push_back(parts_.of_transition[t]);
+    }
+    // Whoever reads data, events or figures is left with the whole net unless places say more.
+    if (!roots.data.empty() || !roots.events.empty()) {
+        for (std::uint32_t t = 0; t < parts_.of_transition.size(); ++t) {
+            out.push_back(parts_.of_transition[t]);
+        }
+    }
+    for (const net::Formula& f : asked.rule.operands) {
+        for (const net::Formula::Node& n : f.nodes) {
+            if (n.op == net::FormulaOp::kHost) {
+                add_figures(n.index, out);
+            }
+        }
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+}
+
+// All parts with movements of the actor or the prop that the atom speaks of.
+void Splitting::add_figures(std::uint32_t atom, std::vector<std::uint32_t>& out) const {
+    const std::vector<net::HostAtom>& atoms = net_->declarations().host_atoms;
+    if (play_ == nullptr || atom >= atoms.size()) {
+        return;
+    }
+    for (std::uint32_t p = 0; p < net_->place_count(); ++p) {
+        const net::ActionIndex action = net_->action(net::PlaceIndex{p});
+        if (!action.valid() || action.value >= play_->actions.size()) {
+            continue;
+        }
+        const motion::BoundCall& call = play_->actions[action.value].call;
+        const bool prop = call.subject.kind == motion::SubjectKind::kProp;
+        const std::string& who = prop ? play_->cast.props[call.subject.prop.value].name
+                                      : play_->cast.actors[call.subject.actor.value].name;
+        const motion::PropIndex claimed = claimed_prop(call);
+        if (atoms[atom].subject.starts_with(who + ".") || atoms[atom].subject == who ||
+            (claimed.valid() && atoms[atom].kind == net::HostAtom::Kind::kHolder)) {
+            out.push_back(parts_.of_place[p]);
+        }
+    }
+}
+
+}  // namespace puppetri::verdict
