@@ -27,6 +27,26 @@ std::int64_t exponential_ticks(double mean_s, std::uint64_t bits) {
     }
     return exact < 9.2e18 ? static_cast<std::int64_t>(std::nearbyint(exact)) : -1;
 }
+
+// The value of a discrete distribution that is nearest to an answer: nothing between can be drawn.
+std::int64_t nearest_value(std::span<const double> parameters, std::int64_t answer,
+                           std::int64_t otherwise) {
+    std::int64_t best = otherwise;
+    for (std::size_t i = 0; i + 1 < parameters.size(); i += 2) {
+        const double exact = parameters[i] * static_cast<double>(kTicksPerSecond);
+        if (!(parameters[i + 1] > 0) || !(exact >= -0.5) || !(exact < 9.2e18)) {
+            continue;
+        }
+        const auto ticks = static_cast<std::int64_t>(std::nearbyint(exact));
+        const auto distance = [answer](std::int64_t t) {
+            return t < answer ? answer - t : t - answer;
+        };
+        if (distance(ticks) < distance(best)) {
+            best = ticks;
+        }
+    }
+    return best;
+}
 }  // namespace
 
 Value Engine::read(std::uint32_t kind, std::uint32_t index) const {
@@ -192,7 +212,7 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
                 const auto t = to_ticks(x);
                 return t ? t->time : SimTime::never();
             };
-            choice.low = {std::max<std::int64_t>(0, bound(s.low).ticks)};
+            choice.low = s.low > 0 ? bound(s.low) : SimTime{0};
             choice.high = bound(s.high);
             if (options_.timekeeper != nullptr) {
                 return wait_for(choice.low.ticks, choice.high.ticks);
@@ -209,6 +229,11 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
             return wrong("a drawn duration goes beyond the end of time");
         }
         ticks = static_cast<std::int64_t>(std::nearbyint(exact));
+        if (!random_ && d.distribution == DistributionKind::kDiscrete) {
+            choice.drawn = {ticks};
+            ticks = nearest_value(parameters, chooser_->choose(choice), ticks);
+            return true;
+        }
     }
     if (!random_) {
         choice.drawn = {ticks};

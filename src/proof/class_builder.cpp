@@ -67,6 +67,23 @@ void ClassBuilder::check(const GraphRequest& request) {
                                      " has a delay that is stopped and goes on");
         }
     }
+    const auto check_values = [&](const std::string& who, const DurationTable& d) {
+        if (d.kind == DurationKind::kDistribution &&
+            d.distribution == DistributionKind::kDiscrete) {
+            graph_.not_exact.push_back(who +
+                                       " lasts one of several times: everything between "
+                                       "them was allowed");
+        }
+    };
+    for (std::uint32_t p = 0; p < places; ++p) {
+        if (n.place[p].duration != kNoIndex) {
+            check_values("place " + std::string(n.places.path(p)),
+                         n.durations[n.place[p].duration]);
+        }
+    }
+    for (const DelayTable& d : n.delays) {
+        check_values("transition " + std::string(n.transitions.path(d.transition)), d.duration);
+    }
     std::vector<bool> unordered(n.rich.size(), false);
     for (std::uint32_t r = 0; r < n.rich.size(); ++r) {
         const std::uint32_t d = n.place[n.rich[r].place].duration;

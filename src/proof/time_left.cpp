@@ -4,6 +4,7 @@
 // is still the same wait. Whoever computes with it asks what an abstraction does not know.
 #include <algorithm>
 
+#include "puppetri/base/distribution.h"
 #include "puppetri/net/tables.h"
 #include "timed_builder.h"
 
@@ -200,9 +201,35 @@ std::vector<std::string> open_durations(const Net& net, const World& world) {
     return list;
 }
 
+namespace {
+
+// Only what is surely 0 or more is taken for it.
+bool may_be_negative(const DurationTable& d) {
+    if (d.kind != DurationKind::kDistribution || d.distribution == DistributionKind::kExponential ||
+        d.distribution == DistributionKind::kErlang || d.distribution == DistributionKind::kGamma) {
+        return false;
+    }
+    return d.constants.size() != d.parameters.size() ||
+           support(d.distribution, d.constants).low < 0;
+}
+
+}  // namespace
+
 std::vector<std::string> assumed(const World& world) {
     const NetTables& n = world.net->tables();
     std::vector<std::string> list;
+    for (std::uint32_t p = 0; p < n.places.size(); ++p) {
+        if (n.place[p].duration != kNoIndex && may_be_negative(n.durations[n.place[p].duration])) {
+            list.push_back("place " + std::string(n.places.path(p)) +
+                           ": what is drawn for it is not below 0");
+        }
+    }
+    for (const DelayTable& d : n.delays) {
+        if (may_be_negative(d.duration)) {
+            list.push_back("transition " + std::string(n.transitions.path(d.transition)) +
+                           ": what is drawn for its delay is not below 0");
+        }
+    }
     for (std::uint32_t p = 0; p < n.places.size(); ++p) {
         if (n.place[p].duration != kNoIndex &&
             n.durations[n.place[p].duration].kind == DurationKind::kAuto) {

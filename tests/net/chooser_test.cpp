@@ -225,5 +225,19 @@ TEST_CASE("damaged bytes are refused, never a crash [hostile]") {
     }
 }
 
+TEST_CASE("of a discrete distribution nothing between its values can be chosen [unit]") {
+    Maker m;
+    m.place("P", 1,
+            drawn(DistributionKind::kDiscrete,
+                  {Expr::time(seconds(1)), Expr::real(1), Expr::time(seconds(3)), Expr::real(2)}));
+    m.t("t", {"P"}, {"Q"});
+    for (const auto& [answer, lasts] : {std::pair{1.9, 1}, {2.1, 3}, {3.0, 3}}) {
+        ScriptedChooser script({seconds(answer).ticks});
+        Run run(m.net(), &script);
+        run.until(10);
+        CHECK(run.log.text == std::to_string(lasts) + ":t");
+    }
+}
+
 }  // namespace
 }  // namespace puppetri::net
