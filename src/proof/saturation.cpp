@@ -18,12 +18,16 @@ Saturation::Saturation(DiagramStore& store, SymbolicLevels& levels)
     }
 }
 
+// Twice, because vectors grow by doubling.
+void Saturation::charge() { store_.charge(2 * (levels_.bytes() + bytes_)); }
+
 const std::vector<Saturation::Candidate>& Saturation::row(std::uint32_t level,
                                                           std::uint32_t value) {
     std::vector<std::vector<Candidate>>& rows = rows_[level];
     if (rows.size() <= value) {
         rows.resize(value + 1);
         have_row_[level].resize(value + 1, 0);
+        bytes_ += sizeof(std::vector<Candidate>) + 6;  // with the queue's share
     }
     if (!have_row_[level][value]) {
         have_row_[level][value] = 1;
@@ -31,6 +35,7 @@ const std::vector<Saturation::Candidate>& Saturation::row(std::uint32_t level,
             const std::uint32_t f = levels_.events()[e].touches[0].function;
             if (levels_.enabled(f, value)) {
                 rows[value].push_back({e, f});
+                bytes_ += sizeof(Candidate);
             }
         }
     }
@@ -61,7 +66,7 @@ void Saturation::saturate_frame(std::uint32_t level, std::uint32_t base) {
     }
     while (!queue.empty() && !store_.failed()) {
         const std::uint32_t value = queue.take();
-        store_.charge(levels_.bytes());
+        charge();
         store_.tick();
         const std::vector<Candidate>& candidates = row(level, value);
         for (std::size_t c = 0; c < candidates.size() && !store_.failed(); ++c) {
@@ -187,6 +192,7 @@ const std::vector<Saturation::Move>& Saturation::moves(std::uint32_t level, std:
     std::vector<std::vector<Move>>& rows = moves_[backward ? 1 : 0][level];
     if (rows.empty()) {
         rows.resize(levels_.value_count(level));
+        bytes_ += rows.size() * sizeof(rows[0]);
         for (const std::uint32_t event : by_top_[level]) {
             const std::uint32_t function = levels_.events()[event].touches[0].function;
             for (std::uint32_t v = 0; v < rows.size(); ++v) {
@@ -194,9 +200,11 @@ const std::vector<Saturation::Move>& Saturation::moves(std::uint32_t level, std:
                     backward ? levels_.before(function, v) : levels_.after(function, v);
                 if (to >= 0) {
                     rows[v].push_back({event, static_cast<std::uint32_t>(to)});
+                    bytes_ += sizeof(Move);
                 }
             }
         }
+        charge();
     }
     return rows[value];
 }

@@ -76,6 +76,7 @@ class Saturation {
         }
     };
 
+    void charge();
     // Events whose top is this level and that are enabled there at this value.
     const std::vector<Candidate>& row(std::uint32_t level, std::uint32_t value);
     void saturate_frame(std::uint32_t level, std::uint32_t base);
@@ -124,6 +125,7 @@ class Saturation {
     std::vector<std::vector<std::uint8_t>> have_row_;
     using ByLevel = std::vector<std::vector<std::vector<Move>>>;
     std::vector<Queue> queues_;  // per level: only one frame of a level works at a time
+    std::uint64_t bytes_ = 0;    // of the rows
     ByLevel moves_[2];           // forward, backward; per level and value
 };
 

@@ -82,7 +82,6 @@ bool SymbolicTables::try_order(const PlaceGroups& order, std::uint64_t work, dou
     if (ended == Ended::kDone) {
         store->end_limit();
         levels->close();
-        store->charge(levels->bytes());
         store->keep(all);
         initial = node_of(net.initial);
         store->keep(initial);

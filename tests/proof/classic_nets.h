@@ -60,4 +60,32 @@ inline PlainNet ring(std::uint32_t places, std::uint32_t tokens) {
     return net;
 }
 
+// Players in a ring who pass balls that have identity to the next one, if that one has none. Who
+// has a ball changes, the order of the balls round the ring does not: balls * binomial(players,
+// balls) markings, if the balls start in order. Place ball * players + player: the player has it;
+// behind these, one place per player whose hands are free.
+inline PlainNet balls_in_a_ring(std::uint32_t players, std::uint32_t balls) {
+    PlainNet net;
+    const auto has = [&](std::uint32_t ball, std::uint32_t player) {
+        return ball * players + player % players;
+    };
+    const auto free = [&](std::uint32_t player) { return balls * players + player % players; };
+    net.initial.assign(balls * players + players, 0);
+    for (std::uint32_t p = 0; p < players; ++p) {
+        net.initial[free(p)] = 1;
+    }
+    for (std::uint32_t b = 0; b < balls; ++b) {
+        const std::uint32_t p = b * (players / balls);
+        net.initial[has(b, p)] = 1;
+        net.initial[free(p)] = 0;
+    }
+    for (std::uint32_t b = 0; b < balls; ++b) {
+        for (std::uint32_t p = 0; p < players; ++p) {
+            add_transition(net, {{has(b, p), 1}, {free(p + 1), 1}},
+                           {{has(b, p + 1), 1}, {free(p), 1}});
+        }
+    }
+    return net;
+}
+
 }  // namespace puppetri::proof::test

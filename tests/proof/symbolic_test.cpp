@@ -88,6 +88,30 @@ TEST_CASE("tokens that hop in a ring are counted by a binomial coefficient [orac
     }
 }
 
+TEST_CASE("100 players pass 10 balls: each ball in one place, nobody freezes [oracle]") {
+    const std::uint32_t players = 100, balls = 10;
+    SymbolicSpace space(test::balls_in_a_ring(players, balls), {});
+    REQUIRE(space.ended() == Ended::kDone);
+    CHECK(space.count(space.all()) == Natural(173'103'094'564'400));  // 10 * binomial(100, 10)
+    CHECK(space.empty(space.dead()) == true);
+    for (std::uint32_t ball = 0; ball < balls; ++ball) {
+        LinearSum holders;
+        for (std::uint32_t p = 0; p < players; ++p) {
+            holders.terms.push_back({ball * players + p, 1});
+        }
+        CHECK(space.min_of(holders, space.all()) == 1);
+        CHECK(space.max_of(holders, space.all()) == 1);
+    }
+    for (std::uint32_t p = 0; p < players; p += 9) {
+        std::vector<std::uint32_t> passes;  // of player p, in the order of the net's making
+        for (std::uint32_t ball = 0; ball < balls; ++ball) {
+            passes.push_back(ball * players + p);
+        }
+        const StateSet moves = space.satisfying(Predicate::enabled(passes));
+        CHECK(space.equal(space.ef(moves), space.all()) == true);
+    }
+}
+
 TEST_CASE("an empty net has one marking, a net without arcs as many edges as transitions [unit]") {
     SymbolicSpace nothing(PlainNet{}, {});
     CHECK(nothing.count(nothing.all()) == Natural(1));
