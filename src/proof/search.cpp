@@ -110,13 +110,19 @@ std::uint64_t Search::bytes() const {
     return form.store->bytes() + index.bytes() + form.scanner->bytes();
 }
 
+void Search::note_bytes(std::uint64_t besides) {
+    const std::uint64_t now = bytes() + besides;
+    bytes_now_ = now;
+    most_bytes = std::max(most_bytes.load(), now);
+}
+
 void Search::look(std::uint64_t more_states, std::uint64_t more_edges) {
     const std::uint64_t states = states_ += more_states, edges = edges_ += more_edges;
     const std::unique_lock<std::mutex> lock(meter_mutex_, std::try_to_lock);
     if (!lock.owns_lock()) {
         return;
     }
-    const Ended why = meter.look(states, edges, 0, bytes());
+    const Ended why = meter.look(states, edges, 0, bytes_now_.load(std::memory_order_relaxed));
     if (why != Ended::kDone) {
         end(why);
     }
@@ -135,7 +141,7 @@ bool Search::new_segment(std::uint32_t& first) {
         return true;
     }
     fill.push_back(0);
-    most_bytes = std::max(most_bytes.load(), bytes());
+    note_bytes();
     return true;
 }
 
@@ -151,7 +157,7 @@ void Search::grow_index() {
     if (index.limit() < states) {
         end(Ended::kStates);
     }
-    most_bytes = std::max(most_bytes.load(), bytes());
+    note_bytes();
 }
 
 bool Search::widen(std::span<const std::uint32_t> marking) {
@@ -182,7 +188,7 @@ bool Search::widen(std::span<const std::uint32_t> marking) {
                 made.store->parent(id) = form.store->parent(id);
             }
         }
-        most_bytes = std::max(most_bytes.load(), bytes() + made.store->bytes());
+        note_bytes(made.store->bytes());
         form.store->drop_before(first);
     }
     form = std::move(made);

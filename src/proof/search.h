@@ -109,11 +109,12 @@ class Search {
 
  private:
     bool make_form(Form& made);
+    void note_bytes(std::uint64_t besides = 0);
 
     std::vector<Semiflow> semiflows_;
     Marking guess_;
     std::mutex meter_mutex_;
-    std::atomic<std::uint64_t> states_{0}, edges_{0};
+    std::atomic<std::uint64_t> states_{0}, edges_{0}, bytes_now_{0};
 };
 
 template <unsigned kWords, bool kShared>

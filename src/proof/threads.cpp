@@ -50,9 +50,12 @@ bool Worker<kWords, kShared>::get_work(Range& range) {
 template <unsigned kWords, bool kShared>
 void Worker<kWords, kShared>::rendezvous() {
     note_bounds();
+    {
+        const std::lock_guard<std::mutex> lock(s_.mutex);
+        note_fill();
+    }
     const auto meet = [&](auto&& act) {
         std::unique_lock<std::mutex> lock(s_.mutex);
-        note_fill();
         const std::uint64_t generation = s_.generation;
         ++s_.arrived;
         s_.gate.wait(lock, [&] { return s_.generation != generation || s_.arrived >= s_.workers; });
