@@ -4,6 +4,7 @@
 #include "tina_priorities.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,7 @@ namespace puppetri::io {
 namespace {
 
 constexpr std::size_t kMostCompared = 20'000;  // 50 MB of bits
+constexpr std::size_t kMostConditions = 20'000;
 
 class Order {
  public:
@@ -21,22 +23,17 @@ class Order {
     bool test(std::size_t a, std::size_t b) const {
         return (bits_[a * words_ + b / 64] & bit(b)) != 0;
     }
-    // Warshall's algorithm on rows of bits.
-    void close() {
-        for (std::size_t k = 0; k < size_; ++k) {
-            for (std::size_t a = 0; a < size_; ++a) {
-                if (a != k && test(a, k)) {
-                    for (std::size_t w = 0; w < words_; ++w) {
-                        bits_[a * words_ + w] |= bits_[k * words_ + w];
-                    }
-                }
-            }
+    // Everything below `b` is below `a`, and b itself.
+    void add(std::size_t a, std::size_t b) {
+        for (std::size_t w = 0; w < words_; ++w) {
+            bits_[a * words_ + w] |= bits_[b * words_ + w];
         }
+        set(a, b);
     }
     std::size_t below(std::size_t a) const {
         std::size_t n = 0;
-        for (std::size_t b = 0; b < size_; ++b) {
-            n += test(a, b) ? 1 : 0;
+        for (std::size_t w = 0; w < words_; ++w) {
+            n += static_cast<std::size_t>(std::popcount(bits_[a * words_ + w]));
         }
         return n;
     }
@@ -46,6 +43,43 @@ class Order {
     std::size_t size_, words_;
     std::vector<std::uint64_t> bits_;
 };
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+// The transitive closure of pairs over `size` elements, the lowest elements first; nothing if they
+// go in a circle, or lead to one: `in_circle` is such an element.
+std::optional<Order> closure(std::size_t size, const Pairs& pairs, std::size_t& in_circle) {
+    std::vector<std::uint32_t> waits(size, 0);  // for how many lower ones
+    std::vector<std::vector<std::uint32_t>> above(size);
+    for (const auto& [a, b] : pairs) {
+        ++waits[a];
+        above[b].push_back(a);
+    }
+    std::vector<std::uint32_t> ready;
+    for (std::uint32_t i = 0; i < size; ++i) {
+        if (waits[i] == 0) {
+            ready.push_back(i);
+        }
+    }
+    Order order(size);
+    std::size_t done = 0;
+    while (done < ready.size()) {
+        const std::uint32_t b = ready[done++];
+        for (const std::uint32_t a : above[b]) {
+            order.add(a, b);
+            if (--waits[a] == 0) {
+                ready.push_back(a);
+            }
+        }
+    }
+    if (done < size) {
+        in_circle = static_cast<std::size_t>(
+            std::find_if(waits.begin(), waits.end(), [](std::uint32_t w) { return w != 0; }) -
+            waits.begin());
+        return std::nullopt;
+    }
+    return order;
+}
 
 // "t is not enabled", as an inhibitor where one arc decides, else as a part of the guard.
 void forbid_while_enabled(const net::TransitionDraft& t, net::TransitionDraft& u) {
@@ -117,24 +151,30 @@ void settle_priorities(net::NetDraft& draft,
         return;
     }
     const auto number = [&](std::uint32_t t) {
-        return static_cast<std::size_t>(std::lower_bound(compared.begin(), compared.end(), t) -
-                                        compared.begin());
+        return static_cast<std::uint32_t>(std::lower_bound(compared.begin(), compared.end(), t) -
+                                          compared.begin());
     };
-    Order order(compared.size());
+    Pairs pairs;
     for (const auto& [a, b] : higher) {
-        order.set(number(a), number(b));
+        pairs.emplace_back(number(a), number(b));
     }
-    order.close();
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    std::size_t in_circle = 0;
+    const std::optional<Order> closed = closure(compared.size(), pairs, in_circle);
+    if (!closed) {
+        const net::TransitionDraft& t = draft.transitions[compared[in_circle]];
+        defects.error("priorities-in-a-circle", t.where, "transition " + t.path,
+                      "it has priority over itself, or over one that has, in a circle",
+                      "take one of the priorities out");
+        return;
+    }
+    const Order& order = *closed;
     std::vector<std::size_t> below(compared.size());
+    std::size_t related = 0;
     for (std::size_t i = 0; i < compared.size(); ++i) {
-        if (order.test(i, i)) {
-            const net::TransitionDraft& t = draft.transitions[compared[i]];
-            defects.error("priorities-in-a-circle", t.where, "transition " + t.path,
-                          "it has priority over itself, in a circle of priorities",
-                          "take one of them out");
-            return;
-        }
         below[i] = order.below(i);
+        related += below[i];
     }
     // A weak order: who has more below is above, who has as many is beside. A transition without
     // any priority is comparable with nobody, so it must not be there.
@@ -161,6 +201,13 @@ void settle_priorities(net::NetDraft& draft,
                           "give every transition its place in one order of levels");
             return;
         }
+    }
+    if (related > kMostConditions) {
+        defects.error("net-too-large", draft.transitions[compared[0]].where, "",
+                      "priorities that are no levels compare more than " +
+                          std::to_string(kMostConditions) + " pairs of transitions",
+                      "give every transition its place in one order of levels");
+        return;
     }
     // From copies: a condition speaks of the arcs of the file, not of conditions added before.
     const std::vector<net::TransitionDraft> as_written = draft.transitions;

@@ -12,8 +12,8 @@
 
 namespace puppetri::io {
 
-// Fails  "priorities-in-a-circle"; "priorities-not-levels" in nets with time.
-// Cost   O(transitions^2 / 64) bits for those that have priorities.
+// Fails  "priorities-in-a-circle"; "priorities-not-levels" in nets with time; "net-too-large".
+// Cost   O(pairs * n / 64 + n^2) for n transitions that have priorities.
 void settle_priorities(net::NetDraft& draft,
                        const std::vector<std::pair<std::uint32_t, std::uint32_t>>& higher,
                        Defects& defects);

@@ -4,6 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <limits>
+#include <random>
+
 #include "puppetri/net/net.h"
 
 using namespace puppetri;
@@ -141,6 +145,114 @@ TEST_CASE("priorities that are no levels forbid while the higher one is enabled 
     CHECK(net::compile(file.draft).has_value());
     CHECK(code_of("tr a [1,1] p ->\ntr b p ->\ntr c p ->\npr a > b\n") == "priorities-not-levels");
     CHECK(code_of("tr a p ->\ntr b p ->\npr a > b\npr b > a\n") == "priorities-in-a-circle");
+}
+
+namespace {
+
+// By definition: enabled, and no transition that is higher, directly or not, is enabled.
+bool holds(const Expr& e, std::uint32_t at, const std::vector<std::int64_t>& marking) {
+    const Expr::Node& n = e.nodes()[at];
+    const auto number = [&](std::uint32_t i) {
+        const Expr::Node& x = e.nodes()[i];
+        return x.op == ExprOp::kSlot ? marking[x.slot.index] : x.literal;
+    };
+    switch (n.op) {
+        case ExprOp::kLess:
+            return number(n.a) < number(n.b);
+        case ExprOp::kGreaterEqual:
+            return number(n.a) >= number(n.b);
+        case ExprOp::kAnd:
+            return holds(e, n.a, marking) && holds(e, n.b, marking);
+        case ExprOp::kOr:
+            return holds(e, n.a, marking) || holds(e, n.b, marking);
+        default:
+            return n.literal != 0;
+    }
+}
+bool enabled(const net::TransitionDraft& t, const std::vector<std::int64_t>& marking) {
+    std::vector<std::int64_t> takes(marking.size(), 0);
+    for (const net::ArcDraft& a : t.inputs) {
+        const std::int64_t tokens = marking[a.place.value];
+        takes[a.place.value] += a.kind == net::ArcKind::kTake ? a.weight : 0;
+        if ((a.kind == net::ArcKind::kUnless && tokens >= a.weight) ||
+            (a.kind == net::ArcKind::kRead && tokens < a.weight) || takes[a.place.value] > tokens) {
+            return false;
+        }
+    }
+    return !t.guard ||
+           holds(*t.guard, static_cast<std::uint32_t>(t.guard->nodes().size()) - 1, marking);
+}
+
+}  // namespace
+
+TEST_CASE("on random nets priorities let fire what TINA lets fire, in every marking [law]") {
+    std::mt19937 random(7);
+    std::size_t levels = 0, conditions = 0;
+    for (int round = 0; round < 400; ++round) {
+        const int transitions = 2 + static_cast<int>(random() % 4);
+        std::string plain = "pl a\npl b\npl c\n", priorities;
+        std::vector<std::vector<bool>> above(
+            static_cast<std::size_t>(transitions),
+            std::vector<bool>(static_cast<std::size_t>(transitions), false));
+        for (int t = 0; t < transitions; ++t) {
+            plain += "tr t" + std::to_string(t);
+            for (const char* place : {"a", "b", "c"}) {
+                const char* arcs[] = {"", "", "*1", "*2", "?1", "?-1", "?-2"};
+                const char* arc = arcs[random() % 7];
+                plain += *arc != 0 ? std::string(" ") + place + arc : "";
+            }
+            plain += " ->\n";
+            for (int u = 0; u < t; ++u) {
+                if (random() % 3 != 0) {
+                    above[static_cast<std::size_t>(u)][static_cast<std::size_t>(t)] = true;
+                    priorities += "pr t" + std::to_string(u) + " > t" + std::to_string(t) + "\n";
+                }
+            }
+        }
+        for (std::size_t k = 0; k < above.size(); ++k) {
+            for (std::size_t i = 0; i < above.size(); ++i) {
+                for (std::size_t j = 0; j < above.size(); ++j) {
+                    above[i][j] = above[i][j] || (above[i][k] && above[k][j]);
+                }
+            }
+        }
+        const NetFile without = read(plain), with = read(plain + priorities);
+        const bool by_levels =
+            std::none_of(with.draft.transitions.begin(), with.draft.transitions.end(),
+                         [](const auto& t) { return t.guard.has_value(); });
+        levels += by_levels ? 1 : 0;
+        conditions += by_levels ? 0 : 1;
+        for (int m = 0; m < 64; ++m) {
+            const std::vector<std::int64_t> marking = {m % 4, m / 4 % 4, m / 16};
+            std::int64_t highest = std::numeric_limits<std::int64_t>::min();
+            for (const net::TransitionDraft& t : with.draft.transitions) {
+                highest = enabled(t, marking) ? std::max(highest, t.priority) : highest;
+            }
+            for (std::size_t i = 0; i < above.size(); ++i) {
+                bool expected = enabled(without.draft.transitions[i], marking);
+                for (std::size_t h = 0; h < above.size(); ++h) {
+                    expected = expected &&
+                               !(above[h][i] && enabled(without.draft.transitions[h], marking));
+                }
+                const net::TransitionDraft& t = with.draft.transitions[i];
+                const bool fires = enabled(t, marking) && t.priority == highest;
+                CHECK(fires == expected);
+            }
+        }
+    }
+    CHECK(levels > 20);
+    CHECK(conditions > 20);
+}
+
+TEST_CASE("priorities of many transitions are settled in no time [hostile]") {
+    std::string text, high, low;
+    for (int i = 0; i < 3000; ++i) {
+        text += "tr t" + std::to_string(i) + " p -> p\n";
+        (i % 2 == 0 ? high : low) += " t" + std::to_string(i);
+    }
+    CHECK(transition(read(text + "pr" + high + " >" + low + "\n"), "t0").priority == 2);
+    CHECK(code_of(text + "tr alone p ->\npr" + high + " >" + low + "\n") == "net-too-large");
+    CHECK(code_of(text + "pr t1 > t1\n") == "priorities-in-a-circle");
 }
 
 TEST_CASE("what is not understood is refused, with its line [unit]") {
