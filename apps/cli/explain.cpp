@@ -47,7 +47,8 @@ void print(const Verdict& v, const verdict::Explanation& e) {
             std::printf("  %s\n", w.words.c_str());
         }
     }
-    if (!e.siphon.empty() && !e.waits.empty()) {
+    constexpr std::size_t kFew = 12;
+    if (!e.siphon.empty() && e.siphon.size() <= kFew && !e.waits.empty()) {
         std::printf("\nempty for ever, since each is filled only out of the others:\n");
         for (const std::string& place : e.siphon) {
             std::printf("  %s\n", place.c_str());

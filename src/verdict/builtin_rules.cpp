@@ -97,14 +97,79 @@ void add_identities(const net::Net& net, const net::NetDraft& draft, std::vector
     }
 }
 
+// Computing it may fail: overflow, division by zero, no number.
+bool may_fail(const Expr& e) {
+    return std::any_of(e.nodes().begin(), e.nodes().end(), [](const Expr::Node& n) {
+        switch (n.op) {
+            case ExprOp::kLiteral:
+            case ExprOp::kSlot:
+            case ExprOp::kNot:
+            case ExprOp::kLess:
+            case ExprOp::kLessEqual:
+            case ExprOp::kGreater:
+            case ExprOp::kGreaterEqual:
+            case ExprOp::kEqual:
+            case ExprOp::kNotEqual:
+            case ExprOp::kAnd:
+            case ExprOp::kOr:
+            case ExprOp::kImplies:
+            case ExprOp::kIf:
+                return false;
+            default:
+                return true;
+        }
+    });
+}
+// A time that is computed may be negative.
+bool may_fail(const net::DurationDraft& d) {
+    const auto computed = [](const Expr& e) { return !e.is_literal(); };
+    return computed(d.a) || computed(d.b) ||
+           std::any_of(d.parameters.begin(), d.parameters.end(), computed);
+}
+
+// Something in the net can stop a run, beside modules that do not end clean, data that leave their
+// ranges, instants without end, and the end of all time.
+bool may_stop(const net::NetDraft& draft) {
+    for (const net::PlaceDraft& p : draft.places) {
+        if ((p.duration && may_fail(*p.duration)) || may_fail(p.key)) {
+            return true;
+        }
+    }
+    for (const net::TransitionDraft& t : draft.transitions) {
+        const bool fails = (t.guard && may_fail(*t.guard)) || (t.odds && !t.odds->is_literal()) ||
+                           (t.delay && may_fail(t.delay->duration)) ||
+                           (t.holding && may_fail(*t.holding));
+        if (fails || std::any_of(t.assignments.begin(), t.assignments.end(),
+                                 [](const net::AssignmentDraft& a) { return may_fail(a.value); })) {
+            return true;
+        }
+        for (const net::OutputDraft& out : t.outputs) {
+            if (out.lasts || std::any_of(out.attributes.begin(), out.attributes.end(),
+                                         [](const Expr& e) { return may_fail(e); })) {
+                return true;
+            }
+        }
+        for (const net::ArcDraft& arc : t.inputs) {
+            for (const net::PatternDraft& pattern : arc.pattern) {
+                if (may_fail(pattern.equals)) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 std::vector<Asked> built_in_rules(const net::Net& net, const net::NetDraft& draft,
                                   const stage::Play* play) {
     std::vector<Asked> out;
     const net::NetTables& tables = net.tables();
-    out.push_back(
-        asked("builtin.time_goes_on", "no instant lasts for ever", Question::kTimeGoesOn));
+    if (!net.paced()) {  // else there is one firing per beat
+        out.push_back(
+            asked("builtin.time_goes_on", "no instant lasts for ever", Question::kTimeGoesOn));
+    }
     if (!tables.refinements.empty()) {
         out.push_back(asked("builtin.modules_end_clean", "nothing is left in a module that ends",
                             Question::kModulesEndClean));
@@ -115,7 +180,7 @@ std::vector<Asked> built_in_rules(const net::Net& net, const net::NetDraft& draf
         out.push_back(
             asked("builtin.data_in_range", "no datum leaves its range", Question::kDataInRange));
     }
-    if (!tables.specials.empty()) {
+    if (may_stop(draft)) {
         out.push_back(
             asked("builtin.nothing_stops", "no run stops with a fault", Question::kNothingStops));
     }

@@ -89,8 +89,7 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
                                .notes = {"every firing hands on each one that it takes"}};
     }
     if (asked.question == Question::kTimeGoesOn && instants_end()) {
-        return StructuralProof{.method = "arcs",
-                               .notes = {"what takes no time cannot go round"}};
+        return StructuralProof{.method = "arcs", .notes = {"what takes no time cannot go round"}};
     }
     if (asked.question != Question::kRule || plain_.unsound) {
         return std::nullopt;
@@ -101,14 +100,21 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
         case RuleKind::kMutex:
         case RuleKind::kExactlyOne:
             return by_invariants(asked.rule, host, budget);
-        case RuleKind::kBounded:
+        case RuleKind::kBounded: {
             if (asked.rule.count != kNoCount) {
                 return by_invariants(asked.rule, host, budget);
             }
-            if (proof::boundedness(plain_.net, budget).kind == proof::BoundednessAnswer::kBounded) {
-                return StructuralProof{.method = "bounded without time"};
+            const proof::BoundednessAnswer answer = proof::boundedness(plain_.net, budget);
+            if (answer.kind == proof::BoundednessAnswer::kBounded) {
+                return StructuralProof{.method = answer.method};
+            }
+            if (answer.kind == proof::BoundednessAnswer::kUnbounded) {
+                grows = "without time, place " +
+                        std::string(net_.place(net::PlaceIndex{answer.place}).path) +
+                        " grows without end";
             }
             return std::nullopt;
+        }
         case RuleKind::kLive:
         case RuleKind::kDeadlockFree:
             return by_theorem(budget);
@@ -176,10 +182,9 @@ bool Structure::instants_end() const {
         }
         const net::Special& s = tables.specials[special];
         for (const net::ArcTable& arc : s.arcs) {
-            slow[t] |= arc.kind == net::ArcKind::kTake && waits(arc.place) &&
-                               own_time[arc.place] == 0
-                           ? 1
-                           : 0;
+            slow[t] |=
+                arc.kind == net::ArcKind::kTake && waits(arc.place) && own_time[arc.place] == 0 ? 1
+                                                                                                : 0;
         }
         // An occurrence is offered to each once.
         slow[t] |= s.events.empty() ? 0 : 1;

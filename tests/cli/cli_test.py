@@ -324,5 +324,56 @@ class Convert(Cli):
         self.assertIn(":2:7: error:", done.stderr)
 
 
+class Prove(Cli):
+    DUET = EXAMPLES / "05_duet/duet.pup"
+
+    def prove(self, *arguments):
+        return run("prove", *arguments, "-o", self.path / "out")
+
+    def test_exit_codes(self):
+        self.assertEqual(self.prove(EXAMPLES / "03_ball/ball.pup").returncode, 0)
+        self.assertEqual(self.prove(self.DUET).returncode, 1)
+        self.assertEqual(self.prove(self.path / "nothing.pup").returncode, 2)
+        self.assertEqual(self.prove(self.DUET, "--rule", "no_such_rule").returncode, 2)
+        self.assertEqual(self.prove(self.DUET, "--time", "soon").returncode, 2)
+        self.assertEqual(self.prove(self.DUET, "--memory", "much").returncode, 2)
+        # No time at all: what structure does not prove is unknown.
+        self.assertEqual(self.prove(self.DUET, "--rule", "goes_on", "--time", "0s").returncode, 3)
+
+    def test_a_witness_replays_runs_and_exports(self):
+        done = self.prove(self.DUET, "--json")
+        answer = {rule["rule"]: rule for rule in json.loads(done.stdout)["rules"]}
+        self.assertEqual(answer["everybody"]["answer"], "refuted")
+        self.assertEqual(answer["goes_on"]["answer"], "proved")
+        witness = answer["everybody"]["witness"]
+        steps = json.loads(pathlib.Path(witness).read_text())["steps"]
+        log = self.path / "log.csv"
+        self.assertEqual(run("run", self.DUET, "--witness", witness, "--log", log).returncode, 0)
+        fired = [(int(row["tick"]), row["transition"]) for row in csv.DictReader(io.StringIO(log.read_text()))]
+        self.assertEqual(fired[:len(steps)], [(s["tick"], s["transition"]) for s in steps])
+        self.assertEqual(run("export", self.DUET, "--witness", witness, "-o", self.path / "bug.glb").returncode, 0)
+        self.assertTrue((self.path / "bug.glb").exists())
+        # Of another scene it is refused, and so is a damaged one.
+        self.assertEqual(run("run", EXAMPLES / "03_ball/ball.pup", "--witness", witness).returncode, 2)
+        damaged = self.path / "damaged.json"
+        damaged.write_text(pathlib.Path(witness).read_text()[:-20])
+        self.assertEqual(run("run", self.DUET, "--witness", damaged).returncode, 2)
+
+    def test_a_repair_is_applied_and_proved(self):
+        scene = self.scene(self.DUET.read_text(), "duet.pup")
+        done = run("explain", scene, "everybody", "--apply", "-o", self.path / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("keeps_everybody", scene.read_text())
+        self.assertEqual(self.prove(scene).returncode, 0)
+
+    def test_a_net_without_rules_is_asked_what_one_asks_of_nets(self):
+        net = self.path / "ring.net"
+        net.write_text("tr t a -> b\ntr u b -> a\npl a (1)\n")
+        done = self.prove(net, "--json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        rules = {rule["rule"] for rule in json.loads(done.stdout)["rules"]}
+        self.assertLessEqual({"deadlock_free", "bounded", "live", "quasi_live", "reversible"}, rules)
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

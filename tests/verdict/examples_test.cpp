@@ -11,6 +11,7 @@
 #include "puppetri/run/player.h"
 #include "puppetri/verdict/explain.h"
 #include "puppetri/verdict/prove.h"
+#include "support/proof_scenes.h"
 
 namespace puppetri::verdict {
 namespace {
@@ -119,6 +120,29 @@ TEST_CASE("the duet goes on while two are frozen; explained, repaired, proved [a
     const Example repaired("05_duet/repaired.pup");
     for (const Verdict& v : repaired.verdicts) {
         CHECK_MESSAGE(v.answer == Answer::kProved, v.rule << " " << v.reason);
+    }
+}
+
+TEST_CASE(
+    "many pairs and a ring of balls with identity are proved part by part and by theorems "
+    "[agree]") {
+    scene::MemoryFiles files;
+    files.add("pairs.pup", made::pairs_of_players(10));
+    files.add("ring.pup", made::ring_of_players(100, 10));
+    for (const char* name : {"pairs.pup", "ring.pup"}) {
+        const auto scene = scene::load(files, name);
+        REQUIRE(scene.has_value());
+        ProveOptions options;
+        options.budget.seconds = 20;
+        const std::vector<Verdict> verdicts = prove(*scene, options);
+        std::uint64_t states = 0;
+        for (const Verdict& v : verdicts) {
+            CHECK_MESSAGE(v.answer == Answer::kProved, std::string(name)
+                                                           << ": " << v.rule << " " << v.reason);
+            states = std::max(states, v.states);
+        }
+        // Never the product of the parts.
+        CHECK(states < 10'000);
     }
 }
 
