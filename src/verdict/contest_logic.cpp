@@ -216,6 +216,7 @@ class Logic {
         }
         proof::Budget budget = session_.share(fraction);
         budget.states = states;
+        budget.bytes = budget.bytes / 5 * 3;  // the rest for predecessors and labels
         const proof::PlainGraph made = proof::build_graph(session_.plain(), atoms, nullptr, budget);
         const proof::Graph& graph = made.graph;
         const net::Rows<std::uint32_t> backwards =

@@ -23,7 +23,8 @@ constexpr const char* kByWalk = "RANDOM_WALK EXPLICIT";
 constexpr const char* kByEquation = "STATE_EQUATION TOPOLOGICAL";
 constexpr const char* kByExploration = "EXPLICIT STATE_COMPRESSION";
 constexpr const char* kByDiagrams = "DECISION_DIAGRAMS";
-constexpr const char* kByReduction =
+constexpr const char* kByReduction = "EXPLICIT STRUCTURAL_REDUCTION STATE_COMPRESSION";
+constexpr const char* kByStubbornSets =
     "EXPLICIT STRUCTURAL_REDUCTION STUBBORN_SETS STATE_COMPRESSION";
 
 // Goals that are not decided yet.
@@ -168,19 +169,26 @@ Decision decide_dead(ContestSession& session) {
     proof::ReductionGoal goal;
     goal.preserves = proof::Preserves::kDeadlock;
     const proof::Reduction reduced = proof::reduce(session.plain(), goal, session.share(0.2, 2));
-    proof::ExploreOptions options;
-    options.find_dead = true;
-    const auto explored = [&](const proof::Budget& budget) {
-        const proof::Exploration e = proof::seek(reduced.net, options, budget);
+    const auto explored = [&](const proof::Budget& budget, bool stubborn) {
+        proof::ExploreOptions options;
+        options.find_dead = true;
+        options.stop_when_found = true;
+        options.reduce = stubborn;
+        const proof::Exploration e = proof::explore(reduced.net, options, budget);
         return e.dead.found                            ? Truth::kTrue
                : e.ended == Ended::kDone && e.complete ? Truth::kFalse
                                                        : Truth::kUnknown;
     };
-    proof::Budget few = session.share(0.5);
+    // A few million states are visited sooner than stubborn sets are computed.
+    proof::Budget few = session.share(0.3);
     few.states = 3'000'000;
-    Truth truth = explored(few);
+    Truth truth = explored(few, false);
     if (truth != Truth::kUnknown) {
         return {truth, kByReduction};
+    }
+    truth = explored(session.share(0.4), true);
+    if (truth != Truth::kUnknown) {
+        return {truth, kByStubbornSets};
     }
     if (proof::SymbolicSpace* space = session.symbolic(0.5)) {
         space->renew(session.share(0.8));
@@ -190,9 +198,9 @@ Decision decide_dead(ContestSession& session) {
         }
     }
     if (!session.out_of_time()) {
-        truth = explored(session.share(1));
+        truth = explored(session.share(1), true);
     }
-    return {truth, kByReduction};
+    return {truth, kByStubbornSets};
 }
 
 std::vector<Maximum> decide_maxima(ContestSession& session,

@@ -2,7 +2,6 @@
 // The same work on several threads, where there are any.
 #pragma once
 #if !defined(__EMSCRIPTEN__) || defined(__EMSCRIPTEN_PTHREADS__)
-#define PUP_HAS_THREADS 1
 #include <thread>
 #include <vector>
 #endif
@@ -13,7 +12,7 @@ namespace puppetri::verdict {
 // has to find its share of the work by itself; one call must be able to do all of it.
 template <class Work>
 void in_parallel(unsigned threads, Work&& work) {
-#if defined(PUP_HAS_THREADS)
+#if !defined(__EMSCRIPTEN__) || defined(__EMSCRIPTEN_PTHREADS__)
     std::vector<std::thread> others;
     for (unsigned i = 1; i < threads; ++i) {
         others.emplace_back([&work, i] { work(i); });

@@ -129,7 +129,8 @@ class CompiledPredicate {
 };
 
 // A state formula (no temporal operator) as a predicate.
-// Gives  nothing if an atom speaks of data, events, firings, readiness of timed places, the host, or
+// Gives  nothing if an atom speaks of data, events, firings, readiness of timed places, the host,
+// or
 //        counts in a way that is not linear; or of the fireability of a transition that is more
 //        than its arcs: with a guard, delay or event, timed places, or beside other priorities.
 std::optional<Predicate> predicate_of(const net::Net& net, const net::Formula& formula);
