@@ -262,6 +262,56 @@ class Explore(Cli):
         self.assertEqual(run("explore", net, "--time", "soon").returncode, 2)
 
 
+class Query(Cli):
+    # One token goes round a b c or, once, to the end.
+    NET = "net n\npl a (1)\ntr t a -> b\ntr u b -> c\ntr v c -> a\ntr w c -> end\n"
+
+    def queries(self, *formulas):
+        text = "".join(f"<property><id>q-{i}</id><description/><formula>{f}</formula></property>"
+                       for i, f in enumerate(formulas))
+        return self.scene(f'<property-set xmlns="http://mcc.lip6.fr/">{text}</property-set>', "q.xml")
+
+    def test_answers_are_lines_in_the_contests_form(self):
+        net = self.scene(self.NET, "n.net")
+        ends = "<integer-le><integer-constant>1</integer-constant><tokens-count><place>end</place></tokens-count></integer-le>"
+        xml = self.queries(
+            f"<exists-path><finally>{ends}</finally></exists-path>",
+            f"<all-paths><finally>{ends}</finally></all-paths>",
+            f"<all-paths><globally><exists-path><finally>{ends}</finally></exists-path></globally></all-paths>",
+            f"<all-paths><finally><globally>{ends}</globally></finally></all-paths>",
+            "<place-bound><place>a</place><place>b</place></place-bound>")
+        done = run("query", net, "--queries", xml)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([line.split()[:3] for line in done.stdout.splitlines()],
+                         [["FORMULA", "q-0", "TRUE"], ["FORMULA", "q-1", "FALSE"], ["FORMULA", "q-2", "TRUE"],
+                          ["FORMULA", "q-3", "FALSE"], ["FORMULA", "q-4", "1"]])
+        self.assertTrue(all(" TECHNIQUES " in line for line in done.stdout.splitlines()))
+        answers = json.loads(run("query", net, "--queries", xml, "--json", "--threads", "2").stdout)["answers"]
+        self.assertEqual([a["value"] for a in answers], [True, False, True, False, 1])
+
+    def test_examinations_need_no_file(self):
+        net = self.scene(self.NET, "n.net")
+        for name, answer in (("ReachabilityDeadlock", "TRUE"), ("QuasiLiveness", "TRUE"), ("Liveness", "FALSE"),
+                             ("OneSafe", "TRUE"), ("StableMarking", "FALSE")):
+            done = run("query", net, "--examination", name)
+            self.assertEqual(done.stdout.split()[:3], ["FORMULA", name, answer])
+        done = run("query", net, "--examination", "StateSpace")
+        self.assertEqual([line.split()[1:3] for line in done.stdout.splitlines()],
+                         [["STATES", "4"], ["TRANSITIONS", "4"], ["MAX_TOKEN_PER_MARKING", "1"],
+                          ["MAX_TOKEN_IN_PLACE", "1"]])
+
+    def test_what_cannot_be_answered_is_missing_and_bad_usage_is_told(self):
+        growing = self.scene("net n\npl a (1)\ntr t a -> a b\n", "g.net")
+        done = run("query", growing, "--examination", "StateSpace", "--time", "300ms")
+        self.assertEqual((done.returncode, done.stdout), (3, "CANNOT_COMPUTE\n" * 4))
+        net = self.scene(self.NET, "n.net")
+        self.assertEqual(run("query", net).returncode, 2)
+        self.assertEqual(run("query", net, "--examination", "Everything").returncode, 2)
+        self.assertEqual(run("query", net, "--queries", self.path / "none.xml").returncode, 2)
+        xml = self.queries("<place-bound><place>nowhere</place></place-bound>")
+        self.assertEqual(run("query", net, "--queries", xml).returncode, 2)
+
+
 class New(Cli):
     def test_each_template_is_a_scene_that_runs(self):
         for template in ("toss", "walk", "ball"):
