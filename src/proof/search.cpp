@@ -172,6 +172,12 @@ bool Search::widen(std::span<const std::uint32_t> marking) {
     if (!make_form(made)) {
         return false;
     }
+    // Both forms are there for a while.
+    const std::uint64_t moved =
+        (std::uint64_t{fill.size()} << StateStore::kSegmentBits) * made.packing.bytes;
+    if (bytes() + moved > budget.bytes) {
+        return false;
+    }
     std::vector<std::uint64_t> from(form.packing.words), to(made.packing.words);
     Marking m(net.place_count());
     for (std::uint32_t segment = 0; segment < fill.size(); ++segment) {
