@@ -88,14 +88,24 @@ SubNet component(const PlainNet& net, const Components& parts, std::uint32_t whi
 SubNet slice(const PlainNet& net, std::span<const std::uint32_t> places) {
     std::vector<std::uint8_t> keep_place(net.place_count(), 0);
     std::vector<std::uint8_t> keep_transition(net.transition_count(), net.has_levels ? 1 : 0);
-    // Who changes a place: takes and gives, unless both are equal.
-    std::vector<std::vector<std::uint32_t>> changers(net.place_count());
-    for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
-        for (const net::Weighted& w : net.takes.row(t)) {
-            changers[w.place].push_back(t);
+    // Who takes from a place or gives to it.
+    net::Rows<std::uint32_t> changers;
+    changers.starts.assign(net.place_count() + 1, 0);
+    for (const ArcRows rows : {&PlainNet::takes, &PlainNet::gives}) {
+        for (const net::Weighted& w : (net.*rows).items) {
+            ++changers.starts[w.place + 1];
         }
-        for (const net::Weighted& w : net.gives.row(t)) {
-            changers[w.place].push_back(t);
+    }
+    for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+        changers.starts[p + 1] += changers.starts[p];
+    }
+    changers.items.resize(changers.starts.back());
+    std::vector<std::uint32_t> next(changers.starts.begin(), changers.starts.end() - 1);
+    for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
+        for (const ArcRows rows : {&PlainNet::takes, &PlainNet::gives}) {
+            for (const net::Weighted& w : (net.*rows).row(t)) {
+                changers.items[next[w.place]++] = t;
+            }
         }
     }
     std::vector<std::uint32_t> open;
@@ -121,7 +131,7 @@ SubNet slice(const PlainNet& net, std::span<const std::uint32_t> places) {
     while (!open.empty()) {
         const std::uint32_t p = open.back();
         open.pop_back();
-        for (const std::uint32_t t : changers[p]) {
+        for (const std::uint32_t t : changers.row(p)) {
             if (keep_transition[t] == 0) {
                 keep_transition[t] = 1;
                 add_tested(t);

@@ -226,8 +226,7 @@ class Search {
             case CaseTree::Kind::kBound: {
                 std::int64_t limit = 0;
                 if (!fits(Wide{node.limit} - initially_[node.sum], limit)) {
-                    // Beyond all counts: the bound holds always or never.
-                    return node.upper == (node.limit > 0);
+                    return true;  // too large to be stated: allowing more is sound
                 }
                 if (node.upper) {
                     program_.program.at_most(variable_[node.sum], limit);
@@ -355,8 +354,9 @@ class Search {
         }
         const LinearProgram::Value v = program_.program.value(variable_[node.sum]);
         const Wide limit = (Wide{node.limit} - initially_[node.sum]);
-        if (limit > (Wide{1} << 62) || limit < -(Wide{1} << 62)) {
-            return node.upper == (limit > 0);
+        std::int64_t stated = 0;
+        if (!fits(limit, stated)) {
+            return true;  // as in require()
         }
         const Wide right = limit * v.denominator;
         return node.upper ? v.numerator <= right : v.numerator >= right;
