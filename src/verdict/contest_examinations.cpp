@@ -73,10 +73,19 @@ Decision all_reachable(ContestSession& session, std::span<const Predicate> goals
     return result;
 }
 
-std::vector<Predicate> each_enabled(const proof::PlainNet& net) {
+// Where each transition may fire: its arcs allow it, and nobody of a higher level is enabled.
+std::vector<Predicate> each_may_fire(const proof::PlainNet& net) {
     std::vector<Predicate> goals;
     for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
-        goals.push_back(Predicate::enabled({t}));
+        std::vector<std::uint32_t> above;
+        for (std::uint32_t u = 0; net.has_levels && u < net.transition_count(); ++u) {
+            if (net.level[u] > net.level[t]) {
+                above.push_back(u);
+            }
+        }
+        const Predicate both[] = {Predicate::enabled({t}),
+                                  Predicate::enabled(std::move(above)).negated()};
+        goals.push_back(Predicate::all_of(both));
     }
     return goals;
 }
@@ -176,7 +185,7 @@ Decision liveness(ContestSession& session) {
     if (quick.truth == Truth::kTrue) {
         return {Truth::kFalse, quick.techniques};
     }
-    for (const Decision& d : decide_reachable_quickly(session, each_enabled(net))) {
+    for (const Decision& d : decide_reachable_quickly(session, each_may_fire(net))) {
         if (d.truth == Truth::kFalse) {
             return d;
         }
@@ -212,7 +221,7 @@ std::vector<ContestAnswer> answer_examination(const net::Net& net, Examination e
             decision = decide_dead(session);
             break;
         case Examination::kQuasiLiveness:
-            decision = all_reachable(session, each_enabled(session.plain()));
+            decision = all_reachable(session, each_may_fire(session.plain()));
             break;
         case Examination::kLiveness:
             decision = liveness(session);

@@ -332,6 +332,21 @@ TEST_CASE("a net that is more than places and arcs is not answered for [unit]") 
     CHECK_FALSE(answers[0].reason.empty());
 }
 
+TEST_CASE("a transition that higher priorities always block is not quasi-live [unit]") {
+    Maker make;
+    make.place("P", 1);
+    make.t("high", {"P"}, {"Q"}).priority = 1;
+    make.t("low", {"P"}, {"R"});
+    make.t("back", {"Q"}, {"P"});
+    const auto quasi_live = [&] {
+        const net::Net net = net::compile(make.draft).value();
+        return answer_examination(net, Examination::kQuasiLiveness, budget())[0].value;
+    };
+    CHECK(quasi_live() == "FALSE");
+    make.draft.transitions[0].priority = 0;
+    CHECK(quasi_live() == "TRUE");
+}
+
 TEST_CASE("lines have the contest's form [unit]") {
     CHECK(contest_line({"Net-PT-CTL-00", "TRUE", "EXPLICIT", ""}) ==
           "FORMULA Net-PT-CTL-00 TRUE TECHNIQUES EXPLICIT");
