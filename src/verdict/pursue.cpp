@@ -236,6 +236,20 @@ class GuidedChooser final : public net::Chooser {
     std::size_t at_ = 0;
 };
 
+// How long to wait for a firing: a thousand rounds of what is scheduled again and again.
+SimTime patience_of(const net::Net& net) {
+    std::int64_t longest = 0;
+    for (const net::ScheduledEvent& e : net.declarations().schedule) {
+        if (e.every) {
+            longest = std::max({longest, e.every->ticks, e.at.ticks});
+        }
+    }
+    constexpr std::int64_t kRounds = 1000;
+    return longest == 0 || longest > SimTime::never().ticks / (4 * kRounds)
+               ? SimTime::never()
+               : SimTime{longest * kRounds};
+}
+
 std::vector<std::uint8_t> state_of(const net::Net& net, const run::Player& player) {
     const std::vector<std::uint8_t> bytes = player.snapshot();
     const auto state = net::read_state(net, bytes);
@@ -366,7 +380,13 @@ class Attempt {
     run::Limits limits(bool maybe, SimTime at) const {
         // Figures decide within some seconds after the firing.
         constexpr SimTime kLook{5 * kTicksPerSecond};
-        return maybe ? run::Limits{.until = at + kLook} : run::Limits{};
+        if (maybe) {
+            return {.until = at + kLook};
+        }
+        // Events that come again and again and find nobody would keep time going for ever.
+        const SimTime patience = patience_of(*theatre_.net);
+        return patience == SimTime::never() ? run::Limits{}
+                                            : run::Limits{.until = player_.now() + patience};
     }
 
     bool push_wanted(bool here) {
