@@ -335,7 +335,7 @@ TEST_CASE("a net that is more than places and arcs is not answered for [unit]") 
 TEST_CASE("a transition that higher priorities always block is not quasi-live [unit]") {
     Maker make;
     make.place("P", 1);
-    make.t("high", {"P"}, {"Q"}).priority = 1;
+    make.t("high", {"P"}, {"Q"}).priority = 2;
     make.t("low", {"P"}, {"R"});
     make.t("back", {"Q"}, {"P"});
     const auto quasi_live = [&] {
@@ -343,7 +343,7 @@ TEST_CASE("a transition that higher priorities always block is not quasi-live [u
         return answer_examination(net, Examination::kQuasiLiveness, budget())[0].value;
     };
     CHECK(quasi_live() == "FALSE");
-    make.draft.transitions[0].priority = 0;
+    make.draft.transitions[0].priority = 1;
     CHECK(quasi_live() == "TRUE");
 }
 
