@@ -2,6 +2,7 @@
 #include "timed_builder.h"
 
 #include <algorithm>
+#include <string_view>
 #include <tuple>
 
 #include "puppetri/net/tables.h"
@@ -46,6 +47,20 @@ void TimedGraph::States::encode(const Driver& driver, std::vector<std::uint8_t>&
     }
 }
 
+namespace {
+
+// Named after a place with a movement: "a.throw.release". That movement may raise it, whoever else
+// does.
+bool of_movement(const Net& net, std::uint32_t event) {
+    const std::string_view path = net.event({event}).path;
+    const std::size_t dot = path.rfind('.');
+    const PlaceIndex place =
+        dot == std::string_view::npos ? PlaceIndex{} : net.find_place(path.substr(0, dot));
+    return place.valid() && net.action(place).valid();
+}
+
+}  // namespace
+
 World world_of(const GraphRequest& request, const AtomReader& atoms) {
     const NetTables& n = request.net.tables();
     World world;
@@ -72,7 +87,7 @@ World world_of(const GraphRequest& request, const AtomReader& atoms) {
                              event.makes_ready.valid() || atoms.mentions_event(e);
         if (matters && event.outside && request.outside_events != 0) {
             world.outer_events.push_back(e);
-        } else if (matters && !event.outside && !raised[e]) {
+        } else if (matters && !event.outside && (!raised[e] || of_movement(request.net, e))) {
             world.movement_events.push_back(e);
         }
     }

@@ -336,4 +336,26 @@ TEST_CASE("movements last what they declare, and the script says how long they t
     CHECK(class_graph(unknown).available());
 }
 
+TEST_CASE(
+    "the event of a movement may occur though nothing comes from outside, and though a firing "
+    "raises it, too [unit]") {
+    for (const bool raised : {false, true}) {
+        Maker m;
+        m.place("Move", 1).action = net::ActionIndex{0};
+        m.place("A", 1);
+        const net::EventIndex e = m.event("Move.strike");
+        m.draft.events[e.value].outside = false;
+        m.t("hear", {"A"}, {"Heard"}).events = {e};
+        if (raised) {
+            m.t("raise", {"Never"}, {}).raises = {e};
+        }
+        const net::Net net = m.net();
+        const Formula atoms[] = {Formula::marked(m.p("Heard"))};
+        const TimedGraph g =
+            readiness_graph({.net = net, .atoms = atoms, .outside_events = 0, .budget = kBudget});
+        CHECK_FALSE(states_where_atom_must(g.graph, 0).empty());
+        CHECK_FALSE(g.graph.exact);
+    }
+}
+
 }  // namespace
