@@ -54,7 +54,7 @@ class Checker {
 
  private:
     Product product(const Monitor* monitor) const {
-        return make_product(graph_, monitor, most_edges_, view_.timed->stops);
+        return make_product(graph_, monitor, most_edges_, view_.timed->stops, net_.paced());
     }
     // All runs are paths, and all paths have been looked at.
     bool covers(const Product& p) const { return graph_.over && p.complete; }

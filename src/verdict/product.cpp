@@ -13,7 +13,7 @@ AtomRow Product::row_of(const proof::Graph& graph, std::uint32_t state) {
 }
 
 Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uint64_t most_edges,
-                     const std::vector<proof::Stop>& stops) {
+                     const std::vector<proof::Stop>& stops, bool paced) {
     Product p;
     p.graph = &graph;
     if (!stops.empty()) {
@@ -84,7 +84,8 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uin
                           {.before = before,
                            .now = Product::row_of(graph, edge.target),
                            .label = edge.label,
-                           .settled = settled(edge.target)},
+                           .settled = settled(edge.target) ||
+                                      (paced && (edge.label & proof::Edge::kEvent) == 0)},
                           next);
             for (const std::uint32_t to : next) {
                 p.targets.push_back(node_of(edge.target, to));

@@ -223,6 +223,8 @@ class Prover {
             if (part == nullptr) {
                 return false;
             }
+            // All rules first: the graph is made for their atoms.
+            std::vector<std::uint32_t> numbers(group.size(), kWhole);
             for (std::size_t k = 0; k < group.size(); ++k) {
                 const Work& w = works_[group[k]];
                 if (!splits(w.asked)) {
@@ -232,7 +234,14 @@ class Prover {
                 Asked own = w.asked;  // reads nothing by number
                 own.rule.operands.clear();
                 own.rule.transitions.clear();
-                const std::uint32_t number = part->add(std::move(own));
+                numbers[k] = part->add(std::move(own));
+            }
+            for (std::size_t k = 0; k < group.size(); ++k) {
+                const Work& w = works_[group[k]];
+                const std::uint32_t number = numbers[k];
+                if (number == kWhole) {
+                    continue;
+                }
                 Verdict v;
                 std::optional<Finding> f = check(*part, number, Method::kReadiness, v);
                 const bool holds = f && f->kind == Kind::kHolds;

@@ -89,6 +89,12 @@ Splitting::Splitting(const net::Net& net, const net::NetDraft& draft, const stag
     for (std::uint32_t& t : parts_.of_transition) {
         t = number[root(t)];
     }
+    for (std::uint32_t& d : parts_.of_datum) {
+        d = number[root(d)];
+    }
+    for (std::uint32_t& e : parts_.of_event) {
+        e = number[root(e)];
+    }
     parts_.count = count;
 }
 

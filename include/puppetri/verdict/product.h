@@ -45,9 +45,10 @@ struct Product {
 };
 
 // Without a monitor: the graph itself. Broken nodes have no edges.
+// paced: a beat passes after each firing, also after one that leads back to the start.
 // Cost    one step of the monitor per edge.
 Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uint64_t most_edges,
-                     const std::vector<proof::Stop>& stops = {});
+                     const std::vector<proof::Stop>& stops = {}, bool paced = false);
 
 using Nodes = std::vector<std::uint8_t>;  // per node: in the set or not
 
