@@ -27,6 +27,9 @@ proof::Budget ContestSession::share(double fraction, double most) const {
     proof::Budget part = budget_;
     const double left = std::max(0.0, budget_.seconds - meter_.seconds());
     part.seconds = std::min(left * fraction, most);
+    if (space_ != nullptr) {  // what is kept for later questions is not there for this one
+        part.bytes -= std::min(part.bytes / 2, space_->bytes());
+    }
     return part;
 }
 

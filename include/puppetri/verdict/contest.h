@@ -44,6 +44,8 @@ struct AnswerSink {
 };
 
 // All queries of one file together, whatever their kinds. In their order.
+// Cost  the budget's time; its bytes for each state space: an explicit and a symbolic one may be
+//       held together.
 std::vector<ContestAnswer> answer_queries(const net::Net& net,
                                           std::span<const ContestQuery> queries,
                                           const proof::Budget& budget, AnswerSink sink = {});
