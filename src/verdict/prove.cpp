@@ -273,8 +273,7 @@ class Prover {
     }
     // It is enough that one part keeps it.
     static bool of_one(const Asked& asked) {
-        return asked.question == Question::kRule &&
-               asked.rule.kind == net::RuleKind::kDeadlockFree;
+        return asked.question == Question::kRule && asked.rule.kind == net::RuleKind::kDeadlockFree;
     }
     // A part can be asked by itself, and the answers put together.
     static bool splits(const Asked& asked) {
@@ -369,8 +368,7 @@ class Prover {
     // Whether time may tell more: not where there is none, and exact times only where they are.
     bool worth(Part& part, Method method) {
         std::string why;
-        const proof::TimedGraph* readiness =
-            graph_of(part, Method::kReadiness, why);
+        const proof::TimedGraph* readiness = graph_of(part, Method::kReadiness, why);
         if (readiness != nullptr && readiness->graph.exact &&
             readiness->graph.ended == proof::Ended::kDone) {
             return false;
@@ -390,8 +388,8 @@ class Prover {
         }
         const bool known = part.has(method);
         const proof::TimedGraph* graph = part.graph(method, b, options_.outside_events, why);
-        if (graph == nullptr || known || graph->graph.ended == proof::Ended::kDone ||
-            part.grows || b.states == states) {
+        if (graph == nullptr || known || graph->graph.ended == proof::Ended::kDone || part.grows ||
+            b.states == states) {
             return graph;
         }
         proof::Budget little = budget(0.1);

@@ -300,7 +300,17 @@ class Attempt {
                 push_wanted(true);
             }
             actors_.listener.occurred.clear();
-            const run::Stop stop = player_.step(limits(maybe, maybe_at));
+            run::Stop stop = run::Stop::kLimit;
+            if (hunt_.obligation->when_settled) {
+                stop = player_.step({.until = player_.now()});
+                if (stop == run::Stop::kLimit && watch_.time_passes() == Says::kBroken &&
+                    target_ != Target::kFires) {
+                    return found(player_.firings());
+                }
+            }
+            if (stop == run::Stop::kLimit) {
+                stop = player_.step(limits(maybe, maybe_at));
+            }
             if (track_ != nullptr) {
                 for (const std::uint32_t e : actors_.listener.occurred) {
                     track_->occurred(e);

@@ -128,7 +128,27 @@ RunWatch::Says RunWatch::begin() {
     reader_.read(player_, may_, must_);
     before_may_ = may_;
     before_must_ = must_;
-    return moment(Operand::kNoFiring, true);
+    if (o_.when_settled) {
+        defer(Operand::kNoFiring, true);
+        return Says::kGood;
+    }
+    return moment(Operand::kNoFiring, true, player_.now());
+}
+
+// Whether time passes after a moment is known only when it has passed.
+void RunWatch::defer(std::uint32_t label, bool start) {
+    deferred_ = true;
+    deferred_label_ = label;
+    deferred_start_ = start;
+    deferred_at_ = player_.now();
+}
+RunWatch::Says RunWatch::time_passes() {
+    if (!deferred_) {
+        return Says::kGood;
+    }
+    deferred_ = false;
+    reader_.read(player_, may_, must_);  // occurrences may have changed it since the firing
+    return moment(deferred_label_, deferred_start_, deferred_at_);
 }
 
 RunWatch::Says RunWatch::fired(std::span<const std::uint32_t> events) {
@@ -136,16 +156,23 @@ RunWatch::Says RunWatch::fired(std::span<const std::uint32_t> events) {
     if (overdue == Says::kBroken) {
         return overdue;
     }
+    if (o_.when_settled) {
+        before_may_ = may_;
+        before_must_ = must_;
+        reader_.read(player_, may_, must_);
+        defer(player_.last().value, false);
+        return Says::kGood;
+    }
     before_may_ = may_;
     before_must_ = must_;
     for (const std::uint32_t e : events) {
-        const Says says = moment(0x80000000u | e, false);
+        const Says says = moment(0x80000000u | e, false, player_.now());
         if (says != Says::kGood) {
             return says;
         }
     }
     reader_.read(player_, may_, must_);
-    return moment(player_.last().value, false);
+    return moment(player_.last().value, false, player_.now());
 }
 
 RunWatch::Says RunWatch::late(SimTime now) const {
@@ -154,6 +181,10 @@ RunWatch::Says RunWatch::late(SimTime now) const {
 }
 
 RunWatch::Says RunWatch::ended(SimTime now, bool rests) {
+    const Says settled = time_passes();
+    if (settled != Says::kGood) {
+        return settled;
+    }
     if (rests && owes_since_) {
         return Says::kBroken;
     }
@@ -162,17 +193,14 @@ RunWatch::Says RunWatch::ended(SimTime now, bool rests) {
 
 std::optional<SimTime> RunWatch::owes_since() const { return owes_since_; }
 
-RunWatch::Says RunWatch::moment(std::uint32_t label, bool start) {
+RunWatch::Says RunWatch::moment(std::uint32_t label, bool start, SimTime now) {
     if (!monitor_) {
         return Says::kGood;
     }
-    const SimTime now = player_.now();
-    // Whether time passes here is known only later: nothing can fire any more in this instant.
-    const bool settled = !o_.when_settled || player_.next_time() > now;
     const Moment m{.before = {before_may_.data(), before_must_.data()},
                    .now = {may_.data(), must_.data()},
                    .label = label,
-                   .settled = settled,
+                   .settled = true,  // if that matters, it was waited for
                    .start = start};
     std::vector<std::uint32_t> all;
     bool broken = false, good = false;

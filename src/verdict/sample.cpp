@@ -162,7 +162,18 @@ Sampled sample(const Theatre& theatre, const Obligation& obligation, const AtomR
         const run::Limits limits{.until = options.horizon, .firings = options.firings};
         while (!broken) {
             performers.listener.occurred.clear();
-            const run::Stop stop = player.step(limits);
+            run::Stop stop = run::Stop::kLimit;
+            if (obligation.when_settled) {
+                stop = player.step({.until = player.now()});
+                broken =
+                    stop == run::Stop::kLimit && watch.time_passes() == RunWatch::Says::kBroken;
+                if (broken) {
+                    break;
+                }
+            }
+            if (stop == run::Stop::kLimit) {
+                stop = player.step(limits);
+            }
             if (stop != run::Stop::kNone) {
                 const bool rests = stop == run::Stop::kDead || stop == run::Stop::kFinal;
                 broken = watch.ended(player.now(), rests) == RunWatch::Says::kBroken;

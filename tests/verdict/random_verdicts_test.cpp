@@ -170,9 +170,15 @@ TEST_CASE("no run contradicts a verdict on random nets [agree]") {
                         player.push(e);
                     }
                 }
-                // Events that come again and again may find nobody for ever.
-                const run::Stop stop =
-                    player.step({.until = player.now() + SimTime{10'000 * test::kRandomNetUnit}});
+                run::Stop stop = player.step({.until = player.now()});
+                if (stop == run::Stop::kLimit) {
+                    for (std::size_t k = 0; k < watches.size(); ++k) {
+                        contradicts(k, watches[k].time_passes() == RunWatch::Says::kBroken);
+                    }
+                    // Events that come again and again may find nobody for ever.
+                    stop = player.step(
+                        {.until = player.now() + SimTime{10'000 * test::kRandomNetUnit}});
+                }
                 if (stop != run::Stop::kNone) {
                     const bool rests = stop == run::Stop::kDead || stop == run::Stop::kFinal;
                     for (std::size_t k = 0; rests && k < watches.size(); ++k) {

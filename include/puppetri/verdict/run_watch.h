@@ -48,6 +48,9 @@ class RunWatch {
     Says begin();
     // After a firing; `events`: what occurred since the last moment.
     Says fired(std::span<const std::uint32_t> events);
+    // Of rules read when settled, which need it: nothing more fires in this instant, and time goes
+    // on (step() with the present time as limit has come back without a firing).
+    Says time_passes();
     // Nothing more happens by itself: `rests` says for good.
     Says ended(SimTime now, bool rests);
     // Something is owed now, and since when.
@@ -56,7 +59,8 @@ class RunWatch {
     const std::vector<std::uint32_t>& states() const { return states_; }
 
  private:
-    Says moment(std::uint32_t label, bool start);
+    Says moment(std::uint32_t label, bool start, SimTime now);
+    void defer(std::uint32_t label, bool start);
     Says late(SimTime now) const;
 
     const Obligation& o_;
@@ -66,6 +70,10 @@ class RunWatch {
     std::vector<std::uint32_t> states_, next_;
     std::vector<std::uint64_t> before_may_, before_must_, may_, must_;
     std::optional<SimTime> owes_since_;
+    // Of rules read when settled: the last moment, until time passes.
+    bool deferred_ = false, deferred_start_ = false;
+    std::uint32_t deferred_label_ = 0;
+    SimTime deferred_at_;
 };
 
 }  // namespace puppetri::verdict
