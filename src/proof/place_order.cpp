@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "few_semiflows.h"
 #include "puppetri/proof/semiflows.h"
 
 namespace puppetri::proof {
@@ -161,23 +162,37 @@ Order narrow_front(const Hypergraph& graph, std::uint32_t start) {
 using Places = std::vector<std::uint32_t>;
 
 // Sets of places of which one is marked, with one token: semiflows of factors one and value one.
-std::vector<Places> exclusive_places(const PlainNet& net) {
-    Budget budget;
-    budget.seconds = 0.5;
-    budget.states = 4000;
-    budget.bytes = std::uint64_t{64} << 20;
+// All minimal ones if they are found in time, else those that a bounded search finds everywhere.
+std::vector<Places> exclusive_places(const PlainNet& net, const Budget& budget) {
+    Budget part = budget;
+    part.seconds = std::max(0.5, std::min(5.0, budget.seconds / 10));
+    part.states = 4000 + net.place_count();
+    part.bytes = std::uint64_t{64} << 20;
+    const Flows minimal = place_semiflows(net, part);
     std::vector<Places> units;
-    for (const Flow& flow : place_semiflows(net, budget).flows) {
-        std::uint64_t value = 0;
-        bool plain = true;
-        Places places;
-        for (const Flow::Term& term : flow.terms) {
-            plain = plain && term.factor == 1;
-            value += net.initial[term.index];
-            places.push_back(term.index);
+    if (minimal.complete) {
+        for (const Flow& flow : minimal.flows) {
+            std::uint64_t value = 0;
+            Places places;
+            for (const Flow::Term& term : flow.terms) {
+                value += term.factor == 1 ? net.initial[term.index] : 2;
+                places.push_back(term.index);
+            }
+            if (value == 1 && places.size() > 1) {
+                units.push_back(std::move(places));
+            }
         }
-        if (plain && value == 1 && places.size() > 1) {
-            units.push_back(std::move(places));
+    } else {
+        for (const Semiflow& flow : few_semiflows(net)) {
+            Places places;
+            for (const auto& [place, weight] : flow.terms) {
+                places.push_back(place);
+            }
+            const bool plain = std::all_of(flow.terms.begin(), flow.terms.end(),
+                                           [](const auto& term) { return term.second == 1; });
+            if (plain && flow.total == 1 && places.size() > 1) {
+                units.push_back(std::move(places));
+            }
         }
     }
     return units;
@@ -233,7 +248,7 @@ std::vector<Ranked> orders_of(const PlainNet& net, const PlaceGroups& groups) {
     const Hypergraph graph = hypergraph_of(net, groups);
     std::vector<Order> orders(1, Order(graph.vertices));
     std::iota(orders[0].begin(), orders[0].end(), 0u);
-    if (graph.vertices > 2 && graph.vertices <= 3000) {
+    if (graph.vertices > 2 && graph.vertices <= 1500) {
         orders.push_back(narrow_front(graph, 0));
         orders.push_back(narrow_front(graph, orders.back().back()));
     }
@@ -269,12 +284,12 @@ std::vector<Ranked> orders_of(const PlainNet& net, const PlaceGroups& groups) {
 
 }  // namespace
 
-std::vector<PlaceGroups> place_orders(const PlainNet& net) {
+std::vector<PlaceGroups> place_orders(const PlainNet& net, const Budget& budget) {
     PlaceGroups single(net.place_count());
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
         single[p] = {p};
     }
-    const std::vector<Places> units = exclusive_places(net);
+    const std::vector<Places> units = exclusive_places(net, budget);
     std::vector<std::vector<Ranked>> kinds;
     std::vector<PlaceGroups> seen;
     for (const PlaceGroups& groups :

@@ -36,8 +36,7 @@ std::vector<Number> count_nodes(const DiagramStore& store, const Reading& readin
 // level is counted between its top and its bottom only; from there on shares of all events go up
 // together.
 template <class Number>
-Number count_firings(const DiagramStore& store, const SymbolicLevels& levels,
-                     const Reading& reading) {
+Number count_firings(DiagramStore& store, const SymbolicLevels& levels, const Reading& reading) {
     const std::vector<Number> counts = count_nodes<Number>(store, reading);
     std::vector<Number> firings(reading.size()), shares(reading.size());
     Number always{};  // of events that touch nothing
@@ -51,7 +50,9 @@ Number count_firings(const DiagramStore& store, const SymbolicLevels& levels,
             const bool touched = touch > 0 && event.touches[touch - 1].level == level;
             touch -= touched ? 1 : 0;
             const std::vector<Number>& below = level == event.bottom() ? counts : shares;
-            for (std::uint32_t i = reading.begin_of(level); i < reading.end_of(level); ++i) {
+            for (std::uint32_t i = reading.begin_of(level);
+                 i < reading.end_of(level) && !store.failed(); ++i) {
+                store.tick();
                 Number share{};
                 for (const DiagramEntry& e : store.entries(reading.node(i))) {
                     if (!touched || levels.enabled(event.touches[touch].function, e.value)) {
@@ -125,9 +126,11 @@ std::optional<Natural> SymbolicSpace::edges(const StateSet& a) {
         return a.known() ? std::optional<Natural>(0) : std::nullopt;
     }
     const Reading reading(*tables_->store, a.root_, tables_->levels->count());
-    const Short few = count_firings<Short>(*tables_->store, *tables_->levels, reading);
-    return few.passed ? count_firings<Natural>(*tables_->store, *tables_->levels, reading)
-                      : Natural(few.value);
+    DiagramStore& store = *tables_->store;
+    const Short few = count_firings<Short>(store, *tables_->levels, reading);
+    const Natural firings =
+        few.passed ? count_firings<Natural>(store, *tables_->levels, reading) : Natural(few.value);
+    return store.failed() ? std::nullopt : std::optional<Natural>(firings);
 }
 
 std::optional<std::vector<std::uint32_t>> SymbolicSpace::max_tokens(const StateSet& a) {
@@ -175,6 +178,9 @@ std::optional<std::int64_t> SymbolicSpace::max_of(const LinearSum& sum, const St
 std::optional<std::int64_t> SymbolicSpace::min_of(const LinearSum& sum, const StateSet& a) {
     if (!a.known() || a.root_ == DiagramStore::kEmpty) {
         return std::nullopt;
+    }
+    for (const LinearSum::Term& term : sum.terms) {
+        PUP_REQUIRE(term.place < net().place_count());
     }
     const SymbolicLevels& levels = *tables_->levels;
     std::vector<std::vector<std::int64_t>> weights;

@@ -132,6 +132,9 @@ StateSet SymbolicSpace::at_most(const LinearSum& sum, std::int64_t limit, const 
     if (!ready(within) || within.root_ == DiagramStore::kEmpty) {
         return within;
     }
+    for (const LinearSum::Term& term : sum.terms) {
+        PUP_REQUIRE(term.place < net().place_count());
+    }
     const SymbolicLevels& levels = *tables_->levels;
     std::vector<std::vector<std::int64_t>> weights;
     if (!levels.weigh(sum, weights)) {
@@ -190,6 +193,9 @@ StateSet SymbolicSpace::satisfying(const Predicate& predicate, std::uint32_t ind
 
 StateSet SymbolicSpace::enabled_any(std::span<const std::uint32_t> transitions,
                                     const StateSet& within) {
+    for (const std::uint32_t t : transitions) {
+        PUP_REQUIRE(t < net().transition_count());
+    }
     return ready(within) ? wrap(tables_->saturation->enabled_any(transitions, within.root_))
                          : StateSet();
 }

@@ -42,7 +42,8 @@ constexpr std::size_t kOrdersAtOnce = 12;
 
 // Orders are tried in turn with growing shares of work, so that one bad order costs little.
 void SymbolicTables::explore() {
-    std::vector<PlaceGroups> orders = place_orders(net);
+    const Meter clock(budget, "symbolic");
+    std::vector<PlaceGroups> orders = place_orders(net, budget);
     if (orders.size() > kOrdersAtOnce) {
         orders.resize(kOrdersAtOnce);
     }
@@ -50,7 +51,6 @@ void SymbolicTables::explore() {
         ended = Ended::kMemory;
         return;
     }
-    const Meter clock(budget, "symbolic");
     for (std::uint64_t work = kFirstWork; !orders.empty(); work *= 4) {
         for (std::size_t i = 0; i < orders.size();) {
             if (try_order(orders[i], work, budget.seconds - clock.seconds())) {

@@ -186,6 +186,49 @@ TEST_CASE(
     CHECK(known > 0);
 }
 
+TEST_CASE(
+    "sets made in little memory, swept while they are made, are the right ones or unknown "
+    "[agree]") {
+    const auto results = [](SymbolicSpace& space) {
+        const auto at_least = [&](std::vector<LinearSum::Term> terms, std::int64_t limit) {
+            return space.satisfying(Predicate::at_least(sum_of(std::move(terms)), limit));
+        };
+        std::vector<LinearSum::Term> spread;
+        for (std::uint32_t p = 0; p < space.net().place_count(); ++p) {
+            spread.push_back({p, static_cast<std::int64_t>(p * 7 % 5) - 2});
+        }
+        const StateSet a = at_least(spread, 1), b = at_least({{0, 1}, {1, 1}}, 1);
+        const StateSet fair[] = {a, b};
+        std::vector<std::optional<Natural>> counts;
+        for (const StateSet& set :
+             {a, space.eg(a), space.eu(a, b), space.ex(space.ex(a)), space.au(b, a),
+              space.ag(space.ef(space.complement(a))), space.fair_eg(space.all(), fair),
+              space.successors(a), space.reached(space.initial(), b)}) {
+            counts.push_back(space.count(set));
+        }
+        return counts;
+    };
+    std::uint32_t known = 0, unknown = 0;
+    for (const PlainNet& net : {test::philosophers(9), test::ring(6, 7)}) {
+        SymbolicSpace roomy(net, {});
+        const auto wanted = results(roomy);
+        for (std::uint64_t bytes = 1'100'000; bytes < 12'000'000; bytes += bytes / 5) {
+            CAPTURE(bytes);
+            Budget budget;
+            budget.bytes = bytes;
+            SymbolicSpace space(net, budget);
+            const auto found = results(space);
+            for (std::size_t i = 0; i < wanted.size(); ++i) {
+                REQUIRE(wanted[i].has_value());
+                CHECK((!found[i].has_value() || *found[i] == *wanted[i]));
+                ++(found[i].has_value() ? known : unknown);
+            }
+        }
+    }
+    CHECK(known > 50);
+    CHECK(unknown > 0);
+}
+
 TEST_CASE("a cancelled or timed out operation leaves its set unknown until the budget is renewed") {
     SymbolicSpace space(test::philosophers(12), {});
     REQUIRE(space.ended() == Ended::kDone);
