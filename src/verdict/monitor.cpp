@@ -182,6 +182,8 @@ void Monitor::step(std::uint32_t state, const Moment& m, std::vector<std::uint32
     }
 }
 
+bool Monitor::when_settled() const { return o_.when_settled; }
+
 bool Monitor::owes(std::uint32_t state) const {
     return (o_.kind == RuleKind::kLeadsTo || o_.kind == RuleKind::kTakesAtMost) && state != kBad &&
            (state & kOwes) != 0;

@@ -42,6 +42,20 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uin
     const auto settled = [&](std::uint32_t s) {
         return (graph.flags[s] & proof::Graph::kSettled) != 0;
     };
+    // Where an event may still come in this instant, time need not pass: a monitor that looks only
+    // where it does may have looked, or not.
+    const auto may_skip = [&](std::uint32_t s, std::uint32_t m) {
+        if (monitor == nullptr || !monitor->when_settled() ||
+            std::find(next.begin(), next.end(), m) != next.end()) {
+            return;
+        }
+        for (const proof::Edge& e : graph.edges.row(s)) {
+            if (e.label != proof::Edge::kPass && (e.label & proof::Edge::kEvent) != 0) {
+                next.push_back(m);
+                return;
+            }
+        }
+    };
     if (graph.size() == 0) {
         p.complete = false;
         p.starts.push_back(0);
@@ -53,6 +67,7 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uin
         monitor->step(monitor->start(),
                       {.before = row, .now = row, .settled = settled(initial), .start = true},
                       next);
+        may_skip(initial, monitor->start());
         for (const std::uint32_t m : next) {
             p.first.push_back(node_of(initial, m));
         }
@@ -87,6 +102,7 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uin
                            .settled = settled(edge.target) ||
                                       (paced && (edge.label & proof::Edge::kEvent) == 0)},
                           next);
+            may_skip(edge.target, m);
             for (const std::uint32_t to : next) {
                 p.targets.push_back(node_of(edge.target, to));
                 p.edge.push_back(e);

@@ -35,6 +35,8 @@ class Monitor {
     bool owes(std::uint32_t state) const;
     // The state says nothing but whether something is owed or armed: the monitor has one state.
     bool stateless() const { return stateless_; }
+    // It looks only where time passes.
+    bool when_settled() const;
 
  private:
     bool may_be_broken(const Moment& moment) const;
