@@ -53,6 +53,11 @@ Finding check_temporal(const net::Net&, const Obligation& o, const GraphView& vi
     }
     proof::Graph own;
     const proof::Graph* graph = &view.timed->graph;
+    // Graphs of many behaviours at once may part a step in two, or join two.
+    if (o.temporal->has_next && !(view.concrete && graph->exact)) {
+        f.reason = "a formula with `next` asks for single steps, which only exact states have";
+        return f;
+    }
     if (o.may_atoms != o.must_atoms) {
         own = with_bounds(*graph, o);
         graph = &own;
