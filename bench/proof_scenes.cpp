@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // How long the proof of whole scenes takes: every rule, the built-in ones included. Each line: what
 // was proved, seconds of the processor for loading and for proving, peak memory.
+#include "support/proof_scenes.h"
+
 #include <sys/resource.h>
 
 #include <cstdio>
@@ -9,7 +11,6 @@
 #include "puppetri/io/disk_files.h"
 #include "puppetri/scene/scene.h"
 #include "puppetri/verdict/prove.h"
-#include "support/proof_scenes.h"
 
 namespace {
 

@@ -47,10 +47,10 @@ Finding check_question(Question question, const GraphView& view, std::uint64_t m
         f.kind = Finding::Kind::kHolds;
         f.product = {};
     } else {
-        f.reason = timed.graph.ended != proof::Ended::kDone
-                       ? std::string("not all states were looked at: ") +
-                             proof::name_of(timed.graph.ended)
-                       : "not all states were looked at";
+        f.reason =
+            timed.graph.ended != proof::Ended::kDone
+                ? std::string("not all states were looked at: ") + proof::name_of(timed.graph.ended)
+                : "not all states were looked at";
     }
     return f;
 }
@@ -59,14 +59,12 @@ bool inexact_durations(const net::Net& net, const std::vector<proof::TickRange>&
     const net::NetTables& tables = net.tables();
     const auto inexact = [&](const net::DurationTable& d, std::uint32_t place) {
         if (d.kind == net::DurationKind::kAuto) {
-            const net::ActionIndex a = place == net::kNoIndex
-                                           ? net::ActionIndex{}
-                                           : net.action(net::PlaceIndex{place});
+            const net::ActionIndex a =
+                place == net::kNoIndex ? net::ActionIndex{} : net.action(net::PlaceIndex{place});
             return !a.valid() || a.value >= actions.size() ||
                    actions[a.value].low != actions[a.value].high;
         }
-        return d.kind == net::DurationKind::kInterval ||
-               d.kind == net::DurationKind::kDistribution;
+        return d.kind == net::DurationKind::kInterval || d.kind == net::DurationKind::kDistribution;
     };
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
         const std::uint32_t d = tables.place[p].duration;
@@ -74,9 +72,9 @@ bool inexact_durations(const net::Net& net, const std::vector<proof::TickRange>&
             return true;
         }
     }
-    return std::any_of(
-        tables.delays.begin(), tables.delays.end(),
-        [&](const net::DelayTable& d) { return inexact(d.duration, net::kNoIndex); });
+    return std::any_of(tables.delays.begin(), tables.delays.end(), [&](const net::DelayTable& d) {
+        return inexact(d.duration, net::kNoIndex);
+    });
 }
 
 bool draws_times(const net::Net& net) {

@@ -10,8 +10,8 @@
 #include "puppetri/net/tables.h"
 #include "puppetri/proof/supervisor.h"
 #include "puppetri/verdict/explain.h"
-#include "puppetri/verdict/prove.h"
 #include "puppetri/verdict/obligation.h"
+#include "puppetri/verdict/prove.h"
 #include "script_player.h"
 
 namespace puppetri::verdict {

@@ -8,7 +8,8 @@ namespace puppetri::made {
 
 // n pairs, each the game of Bicho's figure 5 (20 places), side by side in one scene.
 inline std::string pairs_of_players(int n) {
-    std::string text = "language 1\nscene \"Pairs that play ball\"\nframes 24 per second, until 40 s\n";
+    std::string text =
+        "language 1\nscene \"Pairs that play ball\"\nframes 24 per second, until 40 s\n";
     text += R"(
 net player(me: actor, other: player, ball: prop, starts: bool = no) {
   place with_ball     does me.walk(steps: 3, arms: carry(ball))        takes 60 frames  tokens starts ? 1 : 0
@@ -65,7 +66,8 @@ net player(me: actor, next: player, begins: prop, starts: bool) {
 cast {
 )";
     for (int i = 0; i < n; ++i) {
-        text += "  p" + std::to_string(i) + ": mannequin { at (" + std::to_string(i) + ", 0, 0) m }\n";
+        text +=
+            "  p" + std::to_string(i) + ": mannequin { at (" + std::to_string(i) + ", 0, 0) m }\n";
         if (i % each == 0) {
             text += "  ball" + std::to_string(i) + ": sphere { diameter 22 cm, held by p" +
                     std::to_string(i) + ".hands }\n";
