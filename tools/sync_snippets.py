@@ -11,21 +11,21 @@ brought up to date. Exit 0: all equal (or made so); 1: a block differs, or names
 """
 import pathlib
 import re
-import subprocess
 import sys
 
 BLOCK = re.compile(r"^<!-- from (?P<path>\S+) -->\n(?P<fence>```+)(?P<kind>\w*)\n(?P<body>.*?)^(?P=fence)[ \t]*$", re.M | re.S)
+
+NOT_OURS = re.compile(r"(^|/)(build[^/]*|out|node_modules|\.[^/]*)/")
 
 
 def main():
     arguments = [a for a in sys.argv[1:] if a != "--check"]
     check = "--check" in sys.argv
     root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).resolve().parent.parent)
-    listed = subprocess.run(["git", "-C", str(root), "ls-files", "*.md"], capture_output=True, text=True, check=True)
     blocks, defects = 0, []
-    for name in listed.stdout.split("\n"):
-        page = root / name
-        if not name or not page.exists():
+    for page in sorted(root.rglob("*.md")):
+        name = str(page.relative_to(root))
+        if NOT_OURS.search(name):
             continue
         text = page.read_text()
 

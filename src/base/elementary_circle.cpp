@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Sine and its kin, and their inverses.
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 #include "elementary_tables.h"
+#include "puppetri/base/bit_cast.h"
 #include "puppetri/base/elementary.h"
 
 namespace puppetri {
@@ -67,7 +67,7 @@ Reduced reduce_medium(double x) {
 // 128 after matter; they come from a window of 2/pi. Source  M. Payne, R. Hanek, "Radian reduction
 // for trigonometric functions", SIGNUM Newsletter 18 (1983).
 Reduced reduce_large(double x) {
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+    const std::uint64_t bits = puppetri::bit_cast<std::uint64_t>(x);
     const std::int32_t exponent = static_cast<std::int32_t>((bits >> 52) & 0x7FF) - 1075;
     const std::uint64_t mantissa = (bits & 0xFFFFFFFFFFFFFu) | 0x10000000000000u;
     // The window starts at a word of 32 bits so that all that stands before it times M 2^e is a

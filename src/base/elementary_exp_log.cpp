@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // exp, log, log1p and pow by tables and short series.
-#include <bit>
 #include <cstdint>
 #include <limits>
 
 #include "elementary_tables.h"
+#include "puppetri/base/bit_cast.h"
 #include "puppetri/base/elementary.h"
 
 namespace puppetri {
@@ -19,7 +19,7 @@ constexpr double kSmallestExponent = -0x1.74910d52d3052p+9;  // below, exp is 0
 
 // 2^k for -1022 <= k <= 1023.
 double power_of_two(std::int64_t k) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(k + 1023) << 52);
+    return puppetri::bit_cast<double>(static_cast<std::uint64_t>(k + 1023) << 52);
 }
 
 // exp(x + tail), |tail| much below |x|, kSmallestExponent <= x <= kLargestExponent.
@@ -61,9 +61,9 @@ inline Parts split(double x) {
         shift = 54;
     }
     constexpr std::uint64_t kRootHalf = 0x3FE6A09E667F3BCDu;
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+    const std::uint64_t bits = puppetri::bit_cast<std::uint64_t>(x);
     const std::int64_t k = static_cast<std::int64_t>(bits - kRootHalf) >> 52;
-    const double m = std::bit_cast<double>(bits - (static_cast<std::uint64_t>(k) << 52));
+    const double m = puppetri::bit_cast<double>(bits - (static_cast<std::uint64_t>(k) << 52));
     const std::int32_t j = static_cast<std::int32_t>(m * 128 + 0.5);
     return {.k = static_cast<double>(k - shift), .j = j, .centre = j * 0x1p-7, .m = m};
 }

@@ -3,9 +3,9 @@
 // expression is typed.
 #include "puppetri/base/expr.h"
 
-#include <bit>
 #include <utility>
 
+#include "puppetri/base/bit_cast.h"
 #include "puppetri/base/require.h"
 
 namespace puppetri {
@@ -143,8 +143,8 @@ const char* name_of(EvalFault fault) {
     return "?";
 }
 
-Value value_of_real(double x) { return std::bit_cast<Value>(x); }
-double real_of_value(Value v) { return std::bit_cast<double>(v); }
+Value value_of_real(double x) { return puppetri::bit_cast<Value>(x); }
+double real_of_value(Value v) { return puppetri::bit_cast<double>(v); }
 
 Expr::Expr() : nodes_(1) {}
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "big_number.h"
+#include "puppetri/base/bit_cast.h"
 #include "puppetri/base/require.h"
 #include "puppetri/base/text.h"
 
@@ -20,7 +21,7 @@ struct Binary {
     bool lowest_of_its_power;  // the gap below it is half the gap above
 };
 Binary split(double size) {
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(size);
+    const std::uint64_t bits = puppetri::bit_cast<std::uint64_t>(size);
     const std::uint64_t fraction = bits & 0xFFFFFFFFFFFFFu;
     const int biased = static_cast<int>(bits >> 52) & 0x7FF;
     if (biased == 0) {
@@ -264,7 +265,7 @@ std::optional<Written> read_written(std::string_view text) {
 }
 
 double power_of_two(int k) {  // -1022 <= k <= 1023
-    return std::bit_cast<double>(static_cast<std::uint64_t>(k + 1023) << 52);
+    return puppetri::bit_cast<double>(static_cast<std::uint64_t>(k + 1023) << 52);
 }
 
 // n / d, both above 0, as the nearest double: a quotient of 53 bits (fewer for subnormals) by

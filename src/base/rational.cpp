@@ -3,10 +3,10 @@
 // fits.
 #include "puppetri/base/rational.h"
 
-#include <bit>
 #include <cmath>
 #include <limits>
 
+#include "puppetri/base/bit_cast.h"
 #include "puppetri/base/require.h"
 
 namespace puppetri {
@@ -145,7 +145,7 @@ double to_double(Rational a) {
 }
 
 std::optional<Rational> to_rational(double x) {
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+    const std::uint64_t bits = puppetri::bit_cast<std::uint64_t>(x);
     int exponent = static_cast<int>((bits >> 52) & 0x7FF);
     std::int64_t mantissa = static_cast<std::int64_t>(bits & 0xFFFFFFFFFFFFFu);
     if (exponent == 0x7FF) {

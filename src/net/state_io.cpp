@@ -2,9 +2,9 @@
 // States as bytes: numbers of variable length, lists of what is not zero. The queue of plain tokens
 // is written; that of tokens with records and of delays follows from them.
 #include <algorithm>
-#include <bit>
 #include <limits>
 
+#include "puppetri/base/bit_cast.h"
 #include "puppetri/base/hash.h"
 #include "puppetri/net/state.h"
 #include "puppetri/net/tables.h"
@@ -342,9 +342,9 @@ std::vector<std::uint8_t> write_state(const Net& net, const State& s) {
     for (const Lottery& l : s.lotteries) {
         w.count(l.tickets.size());
         if (!l.tickets.empty()) {
-            w.word(std::bit_cast<std::uint64_t>(l.clock));
+            w.word(puppetri::bit_cast<std::uint64_t>(l.clock));
             for (const Ticket& t : l.tickets) {
-                w.word(std::bit_cast<std::uint64_t>(t.key));
+                w.word(puppetri::bit_cast<std::uint64_t>(t.key));
                 w.count(t.transition);
             }
         }
@@ -509,10 +509,10 @@ Checked<State> read_state(const Net& net, std::span<const std::uint8_t> bytes) {
     for (std::uint32_t l = 0; l < s.lotteries.size(); ++l) {
         const std::uint32_t tickets = r.length();
         if (tickets != 0) {
-            s.lotteries[l].clock = std::bit_cast<double>(r.word());
+            s.lotteries[l].clock = puppetri::bit_cast<double>(r.word());
             for (std::uint32_t i = 0; i < tickets && r.fine(); ++i) {
                 Ticket t;
-                t.key = std::bit_cast<double>(r.word());
+                t.key = puppetri::bit_cast<double>(r.word());
                 t.transition = r.below(transitions);
                 if (r.fine() && (n.transition[t.transition].level != l || !(t.key == t.key))) {
                     return bad("a ticket of another priority");

@@ -4,7 +4,6 @@
 
 #include <doctest/doctest.h>
 
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "puppetri/base/bit_cast.h"
 #include "puppetri/base/random.h"
 
 using namespace puppetri;
@@ -119,7 +119,7 @@ TEST_CASE(
         } else if (i % 4 == 2) {
             bits >>= 12;  // subnormals
         }
-        double x = std::bit_cast<double>(bits);
+        double x = puppetri::bit_cast<double>(bits);
         if (i % 4 == 3) {
             x = static_cast<double>(stream.between(-1000000, 1000000)) / 1000;
         }

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "puppetri/base/bit_cast.h"
+
 namespace puppetri {
 
 // A bijection of 64-bit words in which each input bit flips each output bit with probability about
@@ -42,7 +44,7 @@ class Hash64 {
         if (x == 0) {
             x = 0;
         }
-        return add_u64(x != x ? 0x7FF8000000000000u : std::bit_cast<std::uint64_t>(x));
+        return add_u64(x != x ? 0x7FF8000000000000u : puppetri::bit_cast<std::uint64_t>(x));
     }
     constexpr Hash64& add_text(std::string_view text) {
         add_u64(text.size());
