@@ -154,7 +154,7 @@ void Engine::add_token(std::uint32_t p, std::span<const Value> attributes, std::
         place.pool[slot] = token;
     }
     std::copy(attributes.begin(), attributes.end(),
-              place.values.begin() + std::ptrdiff_t{slot} * table.attributes);
+              place.values.begin() + static_cast<std::ptrdiff_t>(slot) * table.attributes);
     place_in_order(rich, slot);
 
     Counts& c = state_.counts[p];
