@@ -5,39 +5,15 @@
 #include <map>
 
 #include "maker.h"
+#include "reference_nets.h"
 
 namespace puppetri::net {
 namespace {
 
 constexpr double kFrame = 1.0 / 24;
 
-Net walk(int steps) {
-    Maker m;
-    const double n = 20 * kFrame;
-    m.place("P1", 1);
-    m.place("P2", 0, lasts(n / 2));
-    m.place("P4", 0, lasts(n));
-    m.place("P6", 0, lasts(n));
-    m.place("P7", 0, lasts(n / 2));
-    m.place("P8", 0, lasts(n / 2));
-    m.t("t1", {"P1"}, {"P2", "P3"});
-    m.t("t2", {"P2", "unless P5"}, {"P4", "P3"}).priority = 2;
-    m.t("t3", {"P4", "unless P5"}, {"P6", "P3"}).priority = 2;
-    m.t("t4", {"P6", "unless P5"}, {"P4", "P3"}).priority = 2;
-    m.t("t5", {std::to_string(steps) + "*P3"}, {"P5"});
-    m.t("t6", {"P4"}, {"P7"});
-    m.t("t7", {"P2"}, {"P8"});
-    m.t("t8", {"P6"}, {"P8"});
-    m.t("t9", {"P7"}, {"P9"});
-    m.t("t10", {"P8"}, {"P9"});
-    FinalMarkingDraft end;
-    end.condition = Formula::marked(m.p("P9"));
-    m.draft.finals.push_back(end);
-    return m.net();
-}
-
 TEST_CASE("the walk of three steps fires at frames 0, 10, 30, 50, 60 [oracle]") {
-    Run run(walk(3));
+    Run run(walk_net(3));
     CHECK(run.until(100) == Engine::Outcome::kDead);
     CHECK(run.engine.in_final_marking());
     CHECK(run.log.text == "0:t1 0.416667:t2 1.25:t3 1.25:t5 2.083333:t8 2.5:t10");
@@ -47,7 +23,7 @@ TEST_CASE("the walk of three steps fires at frames 0, 10, 30, 50, 60 [oracle]") 
 
 TEST_CASE("k steps last exactly 20 k frames and end with P8 for odd k, P7 for even [law]") {
     for (int k = 1; k <= 6; ++k) {
-        Run run(walk(k));
+        Run run(walk_net(k));
         run.until(100);
         CHECK(run.engine.state().now == seconds(20 * kFrame * k).ticks);
         const std::string last = k % 2 == 1 ? "t10" : "t9";
@@ -106,41 +82,7 @@ struct QuietHost final : MovementHost {
 };
 
 Net ball_game(bool with_walks = false) {
-    Maker m;
-    const auto timed = [&](const char* name, double s) { m.place(name, 0, lasts(s)); };
-    m.place("P1", 1, lasts(1.5));
-    m.place("P13", 1, lasts(1));
-    for (const char* name : {"P2", "P4", "P6", "P8", "P14", "P16", "P18", "P20"}) {
-        timed(name, 0.5);
-    }
-    for (const char* name : {"P3", "P7", "P15", "P19"}) {
-        timed(name, 0.25);
-    }
-    timed("P5", 1);
-    timed("P17", 1.5);
-    timed("P10", 0.5);
-    timed("P12", 0.5);
-    DurationDraft as = of_kind(DurationKind::kAs);
-    as.sibling = m.p("P14");
-    m.place("P9", 0, as);
-    as.sibling = m.p("P6");
-    m.place("P11", 0, as);
-    m.t("t1", {"P1"}, {"P2"});
-    m.t("t2", {"P2", "P9"}, {"P3"});
-    m.t("t3", {"P3"}, {"P4", "P10"});
-    m.t("t4", {"P4"}, {"P5"});
-    m.t("t5", {"P5"}, {"P6", "P11"});
-    m.t("t6", {"P6", "P12"}, {"P7"});
-    m.t("t7", {"P7"}, {"P8"});
-    m.t("t8", {"P8"}, {"P1"});
-    m.t("t9", {"P13"}, {"P14", "P9"});
-    m.t("t10", {"P14", "P10"}, {"P15"});
-    m.t("t11", {"P15"}, {"P16"});
-    m.t("t12", {"P16"}, {"P17"});
-    m.t("t13", {"P17"}, {"P18"});
-    m.t("t14", {"P18", "P11"}, {"P19"});
-    m.t("t15", {"P19"}, {"P20", "P12"});
-    m.t("t16", {"P20"}, {"P13"});
+    Maker m = ball_game_maker();
     if (with_walks) {
         std::uint32_t actions = 0;
         for (std::uint32_t i = 1; i <= 20; ++i) {

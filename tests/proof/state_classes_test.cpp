@@ -6,12 +6,11 @@
 
 #include <algorithm>
 
+#include "net/reference_nets.h"
 #include "puppetri/proof/timed_exact.h"
-#include "timed_nets.h"
 
 using namespace puppetri;
 using namespace puppetri::proof;
-using namespace puppetri::test;
 using net::Formula;
 using net::Maker;
 
@@ -21,7 +20,7 @@ const Budget kBudget;
 constexpr std::int64_t kMs = kTicksPerMillisecond;
 
 TEST_CASE("with single durations classes are the exact states [agree]") {
-    for (const net::Net& net : {walk_net(3), walk_net(4), ball_net()}) {
+    for (const net::Net& net : {net::walk_net(3), net::walk_net(4), net::ball_game_maker().net()}) {
         const TimedGraph timed = timed_exact_graph({.net = net, .budget = kBudget});
         const TimedGraph classes = class_graph({.net = net, .budget = kBudget});
         CHECK(classes.graph.size() == timed.graph.size());

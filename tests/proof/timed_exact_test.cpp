@@ -7,13 +7,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "net/reference_nets.h"
 #include "puppetri/proof/readiness.h"
 #include "puppetri/proof/state_classes.h"
-#include "timed_nets.h"
 
 using namespace puppetri;
 using namespace puppetri::proof;
-using namespace puppetri::test;
 using net::Formula;
 using net::Maker;
 
@@ -22,7 +21,7 @@ namespace {
 const Budget kBudget;
 
 TEST_CASE("the walk of three steps has 11 states, with exact time and without [oracle]") {
-    const net::Net net = walk_net(3);
+    const net::Net net = net::walk_net(3);
     const TimedGraph timed = timed_exact_graph({.net = net, .budget = kBudget});
     const TimedGraph ready = readiness_graph({.net = net, .budget = kBudget});
     CHECK(timed.graph.size() == 11);
@@ -43,7 +42,7 @@ TEST_CASE("the walk of three steps has 11 states, with exact time and without [o
 }
 
 TEST_CASE("every shortest path of the ball game is a script that the engine plays [witness]") {
-    const net::Net net = ball_net();
+    const net::Net net = net::ball_game_maker().net();
     const TimedGraph timed = timed_exact_graph({.net = net, .budget = kBudget});
     CHECK(timed.graph.exact);
     for (std::uint32_t s = 0; s < timed.graph.size(); ++s) {
@@ -61,7 +60,7 @@ std::uint32_t edges_labelled(const TimedGraph& g, std::uint32_t label) {
 
 TEST_CASE("a walk of k steps takes 20 k frames, the shortest and the longest way [law]") {
     for (int k = 1; k <= 5; ++k) {
-        const net::Net net = walk_net(k);
+        const net::Net net = net::walk_net(k);
         const Formula atoms[] = {Formula::marked(net.find_place("P9"))};
         const TimedGraph g = timed_exact_graph({.net = net, .atoms = atoms, .budget = kBudget});
         const TimeToReach t = time_to_reach(g.graph, states_where_atom_must(g.graph, 0));
@@ -76,7 +75,7 @@ TEST_CASE("a walk of k steps takes 20 k frames, the shortest and the longest way
 TEST_CASE("a round of the ball game takes as long as its slowest player, by hand [oracle]") {
     // From log to log by hand: the ball is thrown and caught once per 6 s; both players move on
     // in the same rhythm, so the least and the greatest are the same.
-    const net::Net net = ball_net();
+    const net::Net net = net::ball_game_maker().net();
     const Formula atoms[] = {Formula::ready(net.find_place("P8"))};
     const TimedGraph g = timed_exact_graph({.net = net, .atoms = atoms, .budget = kBudget});
     const auto c = cycle_time(g.graph, states_where_atom_must(g.graph, 0));

@@ -264,6 +264,21 @@ std::string differences(const std::set<std::string>& a, const std::set<std::stri
 
 const Budget kSmall{.seconds = 5, .states = 700};
 
+// Gives `check` some of the shortest runs, systematically, and five long random ones.
+template <class Check>
+void play_many(const net::Net& net, std::size_t most, const Check& check,
+               const std::uint64_t& failures) {
+    net::ExhaustiveChooser all;
+    std::size_t tries = 0;
+    do {
+        check(play(net, all));
+    } while (all.next() && ++tries < most && failures < 3);
+    net::RandomChooser random;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        check(play(net, random, seed, 30, 40 * kRandomNetUnit));
+    }
+}
+
 TEST_CASE("timed exact has exactly the runs of the exhaustive chooser [oracle]") {
     const std::uint64_t nets = nets_to_try(150);
     std::uint64_t compared = 0, runs = 0, failures = 0, endless = 0;
@@ -349,15 +364,7 @@ TEST_CASE("no run leaves the readiness graph [law]") {
                                   << whole);
             }
         };
-        net::ExhaustiveChooser all;
-        std::size_t tries = 0;
-        do {
-            check(play(*net, all));
-        } while (all.next() && ++tries < 100 && failures < 3);
-        net::RandomChooser random;
-        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-            check(play(*net, random, seed, 30, 40 * kRandomNetUnit));
-        }
+        play_many(*net, 100, check, failures);
     }
     MESSAGE(compared << " nets, " << firings << " firings followed, " << refused << " refused, "
                      << endless << " unbounded");
@@ -468,15 +475,7 @@ TEST_CASE("no run leaves the plain untimed picture, priorities and all [law]") {
                 ++firings;
             }
         };
-        net::ExhaustiveChooser all;
-        std::size_t tries = 0;
-        do {
-            check(play(*net, all));
-        } while (all.next() && ++tries < 50 && failures < 3);
-        net::RandomChooser random;
-        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-            check(play(*net, random, seed, 30, 40 * kRandomNetUnit));
-        }
+        play_many(*net, 50, check, failures);
     }
     MESSAGE(compared << " nets, " << firings << " firings followed, " << unsound << " unsound, "
                      << levels << " with levels");

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The reference nets of the timed methods: the walk and the ball game of SCENES.md.
+// The reference nets of SCENES.md, as the tests of the kernel and of the timed methods build them:
+// the walk with 20 frames a step at 24 frames per second, and the ball game with plain durations.
 #pragma once
 #include <string>
 
 #include "net/maker.h"
 
-namespace puppetri::test {
+namespace puppetri::net {
 
-inline net::Net walk_net(int steps) {
-    net::Maker m;
+inline Net walk_net(int steps) {
+    Maker m;
     const double n = 20.0 / 24;
     m.place("P1", 1);
     for (const auto& [name, s] :
          {std::pair{"P2", n / 2}, {"P4", n}, {"P6", n}, {"P7", n / 2}, {"P8", n / 2}}) {
-        m.place(name, 0, net::lasts(s));
+        m.place(name, 0, lasts(s));
     }
     m.t("t1", {"P1"}, {"P2", "P3"});
     m.t("t2", {"P2", "unless P5"}, {"P4", "P3"}).priority = 2;
@@ -25,25 +26,26 @@ inline net::Net walk_net(int steps) {
     m.t("t8", {"P6"}, {"P8"});
     m.t("t9", {"P7"}, {"P9"});
     m.t("t10", {"P8"}, {"P9"});
-    net::FinalMarkingDraft end;
-    end.condition = net::Formula::marked(m.p("P9"));
+    FinalMarkingDraft end;
+    end.condition = Formula::marked(m.p("P9"));
     m.draft.finals.push_back(end);
     return m.net();
 }
 
-inline net::Net ball_net() {
-    net::Maker m;
-    m.place("P1", 1, net::lasts(1.5));
-    m.place("P13", 1, net::lasts(1));
+// Still to be changed: a test may give its places movements.
+inline Maker ball_game_maker() {
+    Maker m;
+    m.place("P1", 1, lasts(1.5));
+    m.place("P13", 1, lasts(1));
     for (const char* name : {"P2", "P4", "P6", "P8", "P14", "P16", "P18", "P20", "P10", "P12"}) {
-        m.place(name, 0, net::lasts(0.5));
+        m.place(name, 0, lasts(0.5));
     }
     for (const char* name : {"P3", "P7", "P15", "P19"}) {
-        m.place(name, 0, net::lasts(0.25));
+        m.place(name, 0, lasts(0.25));
     }
-    m.place("P5", 0, net::lasts(1));
-    m.place("P17", 0, net::lasts(1.5));
-    net::DurationDraft as = net::of_kind(net::DurationKind::kAs);
+    m.place("P5", 0, lasts(1));
+    m.place("P17", 0, lasts(1.5));
+    DurationDraft as = of_kind(DurationKind::kAs);
     as.sibling = m.p("P14");
     m.place("P9", 0, as);
     as.sibling = m.p("P6");
@@ -64,7 +66,7 @@ inline net::Net ball_net() {
     m.t("t14", {"P18", "P11"}, {"P19"});
     m.t("t15", {"P19"}, {"P20", "P12"});
     m.t("t16", {"P20"}, {"P13"});
-    return m.net();
+    return m;
 }
 
-}  // namespace puppetri::test
+}  // namespace puppetri::net
