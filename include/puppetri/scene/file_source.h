@@ -10,6 +10,8 @@
 
 namespace puppetri::scene {
 
+class Assets;  // scene/assets.h
+
 struct FileProblem {
     std::string message;  // "there is no such file"
 };
@@ -30,6 +32,9 @@ class FileSource {
     virtual std::string resolve(const std::string& importer, const std::string& written) {
         return path_beside(importer, written);
     }
+
+    // Reads characters and clips; null where there are none to be had.
+    virtual Assets* assets() { return nullptr; }
 };
 
 // Files in memory, for tests and whoever has the text already.

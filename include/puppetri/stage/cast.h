@@ -2,10 +2,12 @@
 // The cast: who and what is on the stage before anything moves. Plain values, made by the scene or
 // by hand.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/figure/character.h"
 #include "puppetri/math/transform.h"
 #include "puppetri/motion/bound_call.h"
 #include "puppetri/stage/performance.h"
@@ -14,7 +16,8 @@ namespace puppetri::stage {
 
 using motion::SetIndex;
 
-enum class BodyKind : std::uint8_t { kMannequin, kStick };
+// A character has a body of its own (Actor::character); humanoid ones do all that mannequins do.
+enum class BodyKind : std::uint8_t { kMannequin, kStick, kCharacter };
 
 struct Actor {
     std::string name = {};  // "ana"; unique among actors, props and sets
@@ -23,6 +26,12 @@ struct Actor {
     Vec3 position_world = {};  // of the root, on the floor
     double heading_rad = 0;    // 0 faces +Z, pi/2 faces +X
     std::string palette = "teal";
+    std::shared_ptr<const figure::Character> character = {};  // of kCharacter; never null there
+
+    // Whether the movements of humanoids are for it (it has controls: motion/controls.h).
+    bool humanoid() const {
+        return body != BodyKind::kCharacter || (character && character->humanoid.has_value());
+    }
 };
 
 struct Prop {

@@ -46,6 +46,7 @@ struct ActorView {
     std::string name;
     const figure::Skeleton* skeleton = nullptr;  // lives as long as the performance
     const figure::Mesh* mesh = nullptr;
+    figure::JointIndex hips = {};  // none where nothing is called so; joint 0 is the root
 };
 struct PropView {
     std::string name;
