@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "puppetri/base/require.h"
+#include "puppetri/motion/context.h"
 
 namespace puppetri::motion {
 namespace {
@@ -18,7 +19,8 @@ class SideBySide final : public Movement {
  public:
     SideBySide(MovementPtr main, MovementPtr arms)
         : main_(std::move(main)), arms_(std::move(arms)) {
-        limbs = {static_cast<std::uint8_t>(main_->limbs.bits | arms_->limbs.bits)};
+        limbs = both(main_->limbs, arms_->limbs);
+        overlays = both(without(main_->overlays, arms_->limbs), arms_->overlays);
         duration = main_->duration;
         phases = main_->phases;
         phases.insert(phases.end(), arms_->phases.begin(), arms_->phases.end());
@@ -38,6 +40,10 @@ class SideBySide final : public Movement {
         main_->sample(t_s, out);
         arms_->sample(t_s, out);
     }
+    void overlay(double t_s, figure::Pose& pose) const override {
+        main_->overlay(t_s, pose);
+        arms_->overlay(t_s, pose);
+    }
 
  private:
     MovementPtr main_, arms_;
@@ -49,7 +55,8 @@ class InTurn final : public Movement {
         PUP_REQUIRE(!parts_.empty());
         for (const MovementPtr& part : parts_) {
             starts_s_.push_back(duration.seconds());
-            limbs.bits = static_cast<std::uint8_t>(limbs.bits | part->limbs.bits);
+            limbs = both(limbs, part->limbs);
+            overlays = both(overlays, part->overlays);
             for (PhaseSpan span : part->phases) {
                 if (part != parts_.back()) {  // the next part says how it goes on
                     span.end = std::min(span.end, part->duration);
@@ -69,12 +76,19 @@ class InTurn final : public Movement {
         sort_phases(phases);
     }
     void sample(double t_s, Controls& out) const override {
-        const auto after = std::upper_bound(starts_s_.begin() + 1, starts_s_.end(), t_s);
-        const std::size_t i = static_cast<std::size_t>(after - starts_s_.begin()) - 1;
+        const std::size_t i = part_at(t_s);
         parts_[i]->sample(t_s - starts_s_[i], out);
+    }
+    void overlay(double t_s, figure::Pose& pose) const override {
+        const std::size_t i = part_at(t_s);
+        parts_[i]->overlay(t_s - starts_s_[i], pose);
     }
 
  private:
+    std::size_t part_at(double t_s) const {
+        const auto after = std::upper_bound(starts_s_.begin() + 1, starts_s_.end(), t_s);
+        return static_cast<std::size_t>(after - starts_s_.begin()) - 1;
+    }
     std::vector<MovementPtr> parts_;
     std::vector<double> starts_s_;
 };

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 
-#include "arguments.h"
+#include "puppetri/motion/arguments.h"
 #include "puppetri/motion/gait.h"
-#include "puppetri/motion/library.h"
-#include "puppetri/motion/prepare.h"
+#include "puppetri/motion/own_movement.h"
 #include "times.h"
 
 namespace puppetri::motion {
@@ -26,11 +25,13 @@ SimTime walk_of(double steps) {
 }  // namespace
 
 DurationRange declared_duration(const BoundCall& call) {
-    const MovementSignature* signature = find_movement(call.movement, call.subject.kind);
-    PUP_REQUIRE(signature != nullptr);
-    const Arguments arguments(call, *signature);
-    const DurationRange row{signature->shortest, signature->longest};
-    const std::string_view name = signature->name;
+    const MovementSignature& signature = signature_of(call, call.subject.kind);
+    const Arguments arguments(call, signature);
+    if (call.own != nullptr) {
+        return call.own->maker().declared(arguments);
+    }
+    const DurationRange row{signature.shortest, signature.longest};
+    const std::string_view name = signature.name;
     if (name == "support" || name == "transfer") {
         return arguments.get<TokenAttribute>("half") != nullptr
                    ? DurationRange{step_of(StepKind::kFirstHalf), step_of(StepKind::kWhole)}

@@ -4,16 +4,16 @@
 
 #include <string>
 
-#include "arguments.h"
 #include "compose.h"
 #include "puppetri/math/rotation.h"
+#include "puppetri/motion/arguments.h"
 #include "puppetri/motion/arms.h"
 #include "puppetri/motion/ball_game.h"
 #include "puppetri/motion/gait.h"
 #include "puppetri/motion/gaze.h"
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
-#include "puppetri/motion/library.h"
+#include "puppetri/motion/own_movement.h"
 #include "puppetri/motion/turn.h"
 #include "times.h"
 
@@ -64,6 +64,7 @@ class Preparer {
     void arm_swing(double sign);
     void reach();
     void carry(bool stay);
+    void own();
 
     StepKind half_kind(Side transfer) const;
     LimbSet main_limbs();
@@ -112,9 +113,9 @@ LimbSet Preparer::main_limbs() {
     const BoundCall* nested =
         signature_.arms_parameter.empty() ? nullptr : arguments_.nested(signature_.arms_parameter);
     if (nested != nullptr && nested->movement != "swing") {
-        const MovementSignature* signature = find_movement(nested->movement, SubjectKind::kActor);
-        PUP_REQUIRE(signature != nullptr && signature->as_argument);
-        Preparer inner(*nested, *signature, context_, around_, notes_);
+        const MovementSignature& signature = signature_of(*nested, SubjectKind::kActor);
+        PUP_REQUIRE(signature.as_argument);
+        Preparer inner(*nested, signature, context_, around_, notes_);
         const Prepared prepared = inner.run();
         arms_ = prepared.movement;
         result_.prop = prepared.prop;
@@ -322,6 +323,20 @@ void Preparer::catch_ball() {
     result_.movement = make_catch(context_, {.radius_m = radius(ball)});
 }
 
+// What hands hold they go on holding, whatever an own movement says about the arms.
+void Preparer::own() {
+    MovementPtr made = call_.own->maker().make({arguments_, context_, around_, notes_});
+    PUP_REQUIRE(made != nullptr);
+    const bool carries = shared(made->limbs, kBothArms).bits != 0 && around_.holds.valid();
+    if (carries) {
+        note("hands-full", "the arms that it moves hold a prop: they go on carrying it",
+             "let it throw the prop or put it down first");
+        arms_ = make_carry(context_, {.radius_m = radius(around_.holds)});
+        result_.prop = around_.holds;
+    }
+    finish(std::move(made));
+}
+
 void Preparer::leg(bool support) {
     const bool left = call_.subject.limb == Limb::kLeftLeg;
     const Side me = left ? Side::kLeft : Side::kRight;
@@ -379,7 +394,9 @@ void Preparer::carry(bool stay) {
 
 Prepared Preparer::run() {
     const std::string_view name = signature_.name;
-    if (signature_.subject == SubjectKind::kLimb) {
+    if (call_.own != nullptr) {
+        own();
+    } else if (signature_.subject == SubjectKind::kLimb) {
         if (name == "support" || name == "transfer") {
             leg(name == "support");
         } else {
@@ -425,9 +442,7 @@ SimTime standing_time(double lasting_s) {
 
 Prepared prepare(const BoundCall& call, const MotionContext& context, const Surroundings& around,
                  Diagnostics& notes) {
-    const MovementSignature* signature = find_movement(call.movement, call.subject.kind);
-    PUP_REQUIRE(signature != nullptr);
-    return Preparer(call, *signature, context, around, notes).run();
+    return Preparer(call, signature_of(call, call.subject.kind), context, around, notes).run();
 }
 
 }  // namespace puppetri::motion

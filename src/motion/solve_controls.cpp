@@ -3,6 +3,7 @@
 // what hangs below it is solved from where it really is.
 #include "puppetri/motion/solve_controls.h"
 
+#include "limb_planes.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/limb_ik.h"
 #include "trunk.h"
@@ -13,16 +14,6 @@ namespace {
 using figure::Figure;
 using figure::JointIndex;
 using figure::Pose;
-
-// Where the elbow hangs: at an arm that points along kArmBase (down, a little ahead and outward) it
-// lies behind and outward. For other directions of the arm that is carried along by the shortest
-// turn; the direction opposite to the base, where this is undefined, is behind the head, where no
-// hand gets.
-Vec3 elbow_direction(double s, Vec3 arm_direction) {
-    const Vec3 base = normalized(Vec3{0.30 * s, -0.88, 0.36});
-    const Vec3 behind{0.35 * s, 0, -0.94};
-    return rotate(shortest_arc(base, arm_direction, {0, 0, 1}), behind - base * dot(base, behind));
-}
 
 // Raising the heel by an angle lets the shank lean by about a third of it: six rounds leave a
 // thousandth.
@@ -72,11 +63,9 @@ class Solver {
         const figure::Leg& leg = f_.legs[side];
         const LegControl& control = c_.legs[side];
         const Transform pelvis_from_world = inverse(world_from_pelvis_);
-        // The knee points where the foot does, a little held back by the pelvis.
-        Vec3 ahead_world = rotate(control.foot_rotation_world, {0, 0, 1});
-        ahead_world = normalized(Vec3{ahead_world.x, 0, ahead_world.z},
-                                 rotate(c_.pelvis.rotation_world, {0, 0, 1}));
-        const Vec3 pole = rotate(pelvis_from_world.rotation, ahead_world) * 0.6 + Vec3{0, 0, 0.4};
+        const Vec3 ahead_world =
+            knee_ahead_world(control.foot_rotation_world, c_.pelvis.rotation_world);
+        const Vec3 pole = knee_direction(c_.pelvis.rotation_world, ahead_world);
         Transform foot{control.foot_rotation_world, control.ankle_world};
         // Where the joint of the toes is once the sole is down: a foot on its heel comes down
         // first.

@@ -11,11 +11,13 @@ namespace {
 constexpr double kBreathChest_rad = 0.018, kBreathShoulder_rad = 0.026;
 }  // namespace
 
+Quat breath_rotation(double breath) { return about_x(-kBreathChest_rad * breath); }
+
 TrunkRotations trunk_rotations(const BodyControl& body) {
     const Vec3 bend = to_rotation_vector(body.pelvis_from_chest);
     const Quat third = from_rotation_vector(bend * (1.0 / 3));
     const Quat half = from_rotation_vector(to_rotation_vector(body.chest_from_head) * 0.5);
-    const Quat breath = about_x(-kBreathChest_rad * body.breath);
+    const Quat breath = breath_rotation(body.breath);
     return {third, third, third * breath, conjugate(breath) * half, half};
 }
 

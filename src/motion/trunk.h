@@ -12,6 +12,9 @@ struct TrunkRotations {
 };
 TrunkRotations trunk_rotations(const BodyControl& body);
 
+// What a breath does to the upper chest (the head keeps its attitude).
+Quat breath_rotation(double breath);
+
 // pelvis_from_chest: the joint upperChest in the space of `hips`.
 Transform pelvis_from_upper_chest(const figure::Figure& figure, const TrunkRotations& trunk);
 

@@ -41,7 +41,7 @@ void ActorTimeline::sample(SimTime at, motion::Controls& out, bool before) const
     for (int i = 0; i < motion::kLimbCount; ++i) {
         in_charge_of[static_cast<std::size_t>(i)] = &in_charge(static_cast<Limb>(i), at, before);
     }
-    std::uint8_t done = 0;
+    std::uint32_t done = 0;
     for (int i = 0; i < motion::kLimbCount; ++i) {
         if ((done >> i) & 1) {
             continue;
@@ -54,7 +54,7 @@ void ActorTimeline::sample(SimTime at, motion::Controls& out, bool before) const
                 mine = mine.with(static_cast<Limb>(j));
             }
         }
-        done = static_cast<std::uint8_t>(done | mine.bits);
+        done |= mine.bits;
         motion::Controls own = out;
         charge.movement->sample((at - charge.start).seconds(), own);
         motion::copy_limbs(mine, own, out);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "puppetri/motion/library.h"
+#include "puppetri/motion/own_movement.h"
 #include "stage_data.h"
 #include "take_performance.h"
 
@@ -17,8 +17,7 @@ namespace {
 // Attributes of the token in the places where the call names them.
 void resolve(motion::BoundCall& call, std::span<const std::int64_t> attributes,
              SubjectKind subject) {
-    const motion::MovementSignature* signature = motion::find_movement(call.movement, subject);
-    PUP_REQUIRE(signature != nullptr);
+    const motion::MovementSignature& signature = motion::signature_of(call, subject);
     for (motion::Argument& argument : call.arguments) {
         const auto* attribute = std::get_if<motion::TokenAttribute>(&argument.value);
         if (attribute == nullptr) {
@@ -27,7 +26,7 @@ void resolve(motion::BoundCall& call, std::span<const std::int64_t> attributes,
         PUP_REQUIRE(attribute->index < attributes.size());
         const std::int64_t value = attributes[attribute->index];
         const auto index = static_cast<std::uint32_t>(value);
-        for (const motion::Parameter& p : signature->parameters) {
+        for (const motion::Parameter& p : signature.parameters) {
             if (p.name != argument.parameter) {
                 continue;
             }

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "puppetri/motion/library.h"
+#include "puppetri/motion/own_movement.h"
 #include "puppetri/net/tables.h"
 
 namespace puppetri::verdict {
@@ -111,6 +111,14 @@ Formula with_values(const Formula& f, const std::map<std::uint32_t, bool>& value
 
 }  // namespace
 
+LimbSet driven_limbs(const BoundCall& call) {
+    LimbSet limbs = motion::signature_of(call, call.subject.kind).limbs;
+    if (call.subject.kind == SubjectKind::kLimb) {
+        limbs = limbs.with(call.subject.limb);
+    }
+    return limbs;
+}
+
 Swings swings_of(const BoundCall& call, bool calm) {
     const std::string& m = call.movement;
     const Swings anything{true, true, true};
@@ -134,25 +142,18 @@ Swings swings_of(const BoundCall& call, bool calm) {
     if (is_one_of(m, {"walk", "turn", "face", "ready", "throw", "catch"})) {
         return {true, true, false};
     }
+    if (call.own != nullptr) {
+        const LimbSet limbs = driven_limbs(call);
+        const bool pelvis = limbs.has(Limb::kPelvis);
+        const bool left = pelvis || limbs.has(Limb::kLeftLeg);
+        const bool right = pelvis || limbs.has(Limb::kRightLeg);
+        return {left, right, left && right};
+    }
     if (is_one_of(m, {"support", "idle", "stand", "carry", "hold", "reach", "swing",
                       "swing_forward", "swing_backward"})) {
         return {};
     }
     return anything;
-}
-
-LimbSet driven_limbs(const BoundCall& call) {
-    const motion::MovementSignature* signature =
-        motion::find_movement(call.movement, call.subject.kind);
-    LimbSet limbs;
-    if (signature == nullptr) {
-        return limbs;
-    }
-    limbs = signature->limbs;
-    if (call.subject.kind == SubjectKind::kLimb) {
-        limbs = limbs.with(call.subject.limb);
-    }
-    return limbs;
 }
 
 motion::PropIndex claimed_prop(const BoundCall& call) {
@@ -359,8 +360,8 @@ std::vector<net::Rule> figure_rules(const net::Net& net, const stage::Play& play
                 all.push_back(p);
                 // Whoever walks, stands or turns leaves arms alone that hold something.
                 const bool holds = is_one_of(call.movement, {"carry", "hold"});
-                const bool gives_way = !motion::find_movement(call.movement, call.subject.kind)
-                                            ->arms_parameter.empty();
+                const bool gives_way =
+                    !motion::signature_of(call, call.subject.kind).arms_parameter.empty();
                 if (!holds) {
                     without_holding.push_back(p);
                 }

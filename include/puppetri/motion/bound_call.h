@@ -4,6 +4,7 @@
 // the library (library.h) prepares it.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -54,13 +55,17 @@ struct Subject {
     PropIndex prop = {};        // kProp
 };
 
+class OwnMovement;  // own_movement.h
+
 struct BoundCall {
     std::string movement = {};  // "half_step"
     Subject subject = {};
     std::vector<Argument>
         arguments;  // any order, each parameter at most once; what is missing takes its default
     std::vector<BoundCall>
-        nested;  // same subject; only their movement, arguments and nested are read
+        nested;  // same subject; only their movement, arguments, nested and own are read
+    // The definition, of a movement that is not of the library.
+    std::shared_ptr<const OwnMovement> own = {};
 
     // None when the call does not give it.
     const ArgumentValue* find(const char* parameter) const {

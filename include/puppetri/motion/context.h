@@ -53,9 +53,9 @@ inline constexpr LimbSet kBothArms{(1 << static_cast<int>(Limb::kLeftArm)) |
 inline constexpr LimbSet kLowerBody{(1 << static_cast<int>(Limb::kPelvis)) |
                                     (1 << static_cast<int>(Limb::kLeftLeg)) |
                                     (1 << static_cast<int>(Limb::kRightLeg))};
-constexpr LimbSet without(LimbSet a, LimbSet b) {
-    return {static_cast<std::uint8_t>(a.bits & ~b.bits)};
-}
+constexpr LimbSet without(LimbSet a, LimbSet b) { return {a.bits & ~b.bits}; }
+constexpr LimbSet both(LimbSet a, LimbSet b) { return {a.bits | b.bits}; }
+constexpr LimbSet shared(LimbSet a, LimbSet b) { return {a.bits & b.bits}; }
 constexpr LimbSet limb_set(Limb limb) { return LimbSet{}.with(limb); }
 constexpr Limb leg_of(Side side) { return side == Side::kLeft ? Limb::kLeftLeg : Limb::kRightLeg; }
 constexpr Limb arm_of(Side side) { return side == Side::kLeft ? Limb::kLeftArm : Limb::kRightArm; }

@@ -20,12 +20,16 @@ enum class Side : std::uint8_t { kLeft, kRight };
 enum class Limb : std::uint8_t { kPelvis, kBody, kLeftLeg, kRightLeg, kLeftArm, kRightArm };
 inline constexpr int kLimbCount = 6;
 
+// Figures that are no humanoids have no controls; their limbs are named chains of joints, numbered
+// from kLimbCount on.
+inline constexpr int kMaxLimbs = 32;
+
 // A set of limbs as bits, bit i for Limb i.
 struct LimbSet {
-    std::uint8_t bits = 0;
+    std::uint32_t bits = 0;
     constexpr bool has(Limb limb) const { return (bits >> static_cast<int>(limb)) & 1; }
     constexpr LimbSet with(Limb limb) const {
-        return {static_cast<std::uint8_t>(bits | (1 << static_cast<int>(limb)))};
+        return {bits | (std::uint32_t{1} << static_cast<int>(limb))};
     }
     constexpr bool operator==(const LimbSet&) const = default;
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "puppetri/base/time.h"
+#include "puppetri/figure/skeleton.h"
 #include "puppetri/motion/controls.h"
 
 namespace puppetri::motion {
@@ -40,13 +41,25 @@ class Movement {
     std::vector<PhaseSpan> phases;      // ordered by limb, then begin
     std::vector<MovementEvent> events;  // ordered by time
 
+    // The limbs whose joints `overlay` poses; a part of `limbs`. None: the controls say it all.
+    LimbSet overlays;
+
     // Writes the controls of `limbs`, and nothing else, at t seconds after the start. Beyond the
     // duration a movement goes on as a living rest (a standing figure keeps breathing, a carrying
     // hand keeps carrying), since the next may be late. Needs t >= 0. Cost: no allocation.
     virtual void sample(double t_s, Controls& out) const = 0;
+
+    // Changes the joints of `overlays`, and no others, at t seconds after the start: what controls
+    // cannot say. The pose it gets is what the sampled controls were solved into (of a figure
+    // without controls: the rest pose), so that what the movement does to a joint goes on top of
+    // whatever else is done to the controls.
+    // Cost: no allocation.
+    virtual void overlay(double t_s, figure::Pose& pose) const;
 };
 
 // Stateful values never change after preparing, so that sharing is safe.
 using MovementPtr = std::shared_ptr<const Movement>;
+
+inline void Movement::overlay(double, figure::Pose&) const {}
 
 }  // namespace puppetri::motion
