@@ -138,6 +138,15 @@ void Stage::left(net::ActivityIndex activity, SimTime at) {
 }
 
 std::span<const ScoreEntry> Stage::score() const { return data_->take.score; }
+void Stage::pass_to(SimTime at) { data_->advance(at); }
+void Stage::pose(ActorIndex actor, SimTime at, figure::Pose& out) const {
+    PUP_REQUIRE(actor.value < data_->take.actors.size());
+    data_->take.pose(actor, std::max(at, SimTime{0}), out);
+}
+const figure::Figure& Stage::figure(ActorIndex actor) const {
+    PUP_REQUIRE(actor.value < data_->take.actors.size());
+    return *data_->take.actors[actor.value].figure;
+}
 const Diagnostics& Stage::diagnostics() const { return data_->diagnostics; }
 
 std::unique_ptr<const Performance> Stage::finish(SimTime end) {

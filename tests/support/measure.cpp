@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "puppetri/math/rotation.h"
+#include "puppetri/motion/join.h"
 
 namespace puppetri::test {
 namespace {
@@ -235,27 +236,24 @@ class Instrument {
     }
 
     JointMeasures* group(std::uint32_t j) {
-        const JointIndex joint{j};
-        for (const figure::Leg& leg : f_.legs) {
-            if (joint == leg.hip)
-                return &m_.hip;
-            if (joint == leg.knee)
+        switch (motion::group_of(f_, {j})) {
+            case motion::JointGroup::kNone:
+                return nullptr;
+            case motion::JointGroup::kKnee:
                 return &m_.knee;
-            if (joint == leg.ankle)
+            case motion::JointGroup::kHip:
+                return &m_.hip;
+            case motion::JointGroup::kAnkle:
                 return &m_.ankle;
-            if (joint == leg.toes)
+            case motion::JointGroup::kToes:
                 return &m_.toes;
-        }
-        if (joint == f_.spine || joint == f_.chest || joint == f_.upper_chest)
-            return &m_.spine;
-        if (joint == f_.neck || joint == f_.head)
-            return &m_.neck;
-        for (const figure::Arm& arm : f_.arms) {
-            if (joint == arm.clavicle || joint == arm.shoulder || joint == arm.elbow ||
-                joint == arm.hand || joint == arm.shoulder_twist || joint == arm.elbow_twist) {
+            case motion::JointGroup::kSpine:
+                return &m_.spine;
+            case motion::JointGroup::kNeck:
+                return &m_.neck;
+            case motion::JointGroup::kArm:
                 return &m_.arm;
-            }
-            if (std::find(arm.fingers.begin(), arm.fingers.end(), joint) != arm.fingers.end())
+            case motion::JointGroup::kFingers:
                 return &m_.fingers;
         }
         return nullptr;
@@ -282,62 +280,30 @@ class Instrument {
         }
     }
 
-    // Samples a join very finely from both sides: the limits of position, velocity and acceleration
-    // there.
     void joins() {
-        constexpr double h = 1e-5;
-        std::vector<Transform> grid[8];
-        for (const double t : in_.joins_s) {
-            if (t - 4 * h < in_.begin_s || t + 4 * h > in_.end_s) {
-                continue;
-            }
-            for (int k = 0; k < 8;
-                 ++k) {  // t - 4h .. t - h, t .. t + 3h, kept off the instant itself
-                grid[k].resize(joint_count_);
-                in_.sample(t + (k - 4 + 0.5) * h, grid[k]);
-            }
-            for (std::uint32_t j = 0; j < joint_count_; ++j) {
-                const std::string& joint = name({j});
-                auto p = [&](int k) { return grid[k][j].translation; };
-                const Vec3 left_v = (p(3) - p(2)) * (1 / h), right_v = (p(5) - p(4)) * (1 / h);
-                const Vec3 left = p(3) + left_v * (h / 2), right = p(4) - right_v * (h / 2);
-                take(m_.join_position_m, length(right - left), t, joint);
-                const double jump = length(right_v - left_v);
-                if (j == f_.hips.value) {
-                    take(m_.join_pelvis_m_s, jump, t, joint);
-                }
-                for (int side = 0; side < 2; ++side) {
-                    if (j == f_.arms[side].hand.value) {
-                        take(m_.join_hand_m_s, jump, t, joint);
-                    }
-                    if (j == f_.legs[side].ankle.value) {
-                        take(m_.join_foot_m_s, jump, t, joint);
-                    }
-                }
-                if (JointMeasures* to = group(j); to != nullptr && to != &m_.fingers) {
-                    join_acceleration(t, j, joint);
-                }
-            }
-        }
-    }
-
-    // Across the join at the instrument's rate, against the largest within 60 ms on either side.
-    // Accelerations below 20 rad/s^2 (a twentieth of what a walk may reach) are no jerk whatever
-    // their ratio.
-    void join_acceleration(double t, std::uint32_t j, const std::string& joint) {
-        const int reach = static_cast<int>(0.06 / dt_),
-                  k = static_cast<int>(std::floor((t - in_.begin_s) / dt_ + 1e-6));
-        auto acceleration = [&](int i) {
-            return length(angular_velocity(local(i, j), local(i + 1, j), dt_) -
-                          angular_velocity(local(i - 1, j), local(i, j), dt_)) /
-                   dt_;
+        const auto sample = [](void* context, double t_s, std::span<Transform> world) {
+            static_cast<const MeasureInput*>(context)->sample(t_s, world);
         };
-        double across = 0, sides = 20;
-        for (int i = std::max(1, k - reach); i <= std::min(count_ - 2, k + 1 + reach); ++i) {
-            (i == k || i == k + 1 ? across : sides) =
-                std::max(i == k || i == k + 1 ? across : sides, acceleration(i));
+        for (const double t : in_.joins_s) {
+            const motion::JoinMeasures join =
+                motion::measure_join({.figure = f_,
+                                      .sample = sample,
+                                      .context = const_cast<MeasureInput*>(&in_),
+                                      .at_s = t,
+                                      .begin_s = in_.begin_s,
+                                      .end_s = in_.end_s,
+                                      .rate_hz = in_.rate_hz});
+            const auto worst = [&](Worst& to, const motion::JoinValue& from) {
+                if (from.value > 0) {
+                    take(to, from.value, t, name(from.joint));
+                }
+            };
+            worst(m_.join_position_m, join.position_m);
+            worst(m_.join_pelvis_m_s, join.pelvis_m_s);
+            worst(m_.join_hand_m_s, join.hand_m_s);
+            worst(m_.join_foot_m_s, join.foot_m_s);
+            worst(m_.join_acceleration_ratio, join.acceleration_ratio);
         }
-        take(m_.join_acceleration_ratio, across / sides, t, joint);
     }
 
     const MeasureInput& in_;

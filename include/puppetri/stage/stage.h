@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/figure/mannequin.h"
 #include "puppetri/motion/bound_call.h"
 #include "puppetri/motion/declared_duration.h"
 #include "puppetri/net/host.h"
@@ -60,6 +61,16 @@ class Stage final : public net::MovementHost {
 
     // Rows in order of start, then of arrival. May be asked while the run goes on.
     std::span<const ScoreEntry> score() const;
+
+    // Time goes on to `at` and nothing is called before: what an instant leaves to be settled (limbs
+    // that were cut and that nobody took, ...) is settled for all earlier ones.
+    // Needs  `at` not before the last call's time.
+    void pass_to(SimTime at);
+    // The pose of an actor at any instant, as its movements have it so far; of instants that have
+    // passed it stays so. Without the turn of the head after what it looks at, which is laid over
+    // when the take ends.
+    void pose(ActorIndex actor, SimTime at, figure::Pose& out) const;
+    const figure::Figure& figure(ActorIndex actor) const;
 
     // What went wrong or deserves a word so far: why begin answered negative, flights above 9 m/s
     // or 6 m, limbs driven by two movements at once.
