@@ -26,7 +26,10 @@ void take(JoinValue& worst, double value, std::uint32_t joint) {
 class Ruler {
  public:
     explicit Ruler(const JoinInput& input)
-        : in_(input), f_(input.figure), joints_(f_.skeleton.joints.size()), dt_(1 / input.rate_hz) {}
+        : in_(input),
+          f_(input.figure),
+          joints_(f_.skeleton.joints.size()),
+          dt_(1 / input.rate_hz) {}
 
     JoinMeasures run(const JoinLimits* enough) {
         if (in_.at_s - 4 * kBeside_s < in_.begin_s || in_.at_s + 4 * kBeside_s > in_.end_s) {
@@ -90,8 +93,7 @@ class Ruler {
     void accelerations(const JoinLimits* enough) {
         const int reach = static_cast<int>(kReach_s / dt_);
         const int k = static_cast<int>(std::floor((in_.at_s - in_.begin_s) / dt_ + 1e-6));
-        const int last =
-            static_cast<int>(std::floor((in_.end_s - in_.begin_s) / dt_ + 1e-6)) - 1;
+        const int last = static_cast<int>(std::floor((in_.end_s - in_.begin_s) / dt_ + 1e-6)) - 1;
         const int from = std::max(1, k - reach), to = std::min(last, k + 1 + reach);
         if (from > to) {
             return;

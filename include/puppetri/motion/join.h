@@ -37,9 +37,9 @@ struct JoinInput {
     // Fills world_from_joint, one per joint of the skeleton.
     void (*sample)(void* context, double t_s, std::span<Transform> world_from_joint) = nullptr;
     void* context = nullptr;
-    double at_s = 0;                  // the instant at which a movement begins
-    double begin_s = 0, end_s = 0;    // what can be sampled
-    double rate_hz = 480;             // of the grid from begin_s on for accelerations
+    double at_s = 0;                // the instant at which a movement begins
+    double begin_s = 0, end_s = 0;  // what can be sampled
+    double rate_hz = 480;           // of the grid from begin_s on for accelerations
 };
 
 // The worst of one quantity and the joint that has it.
@@ -59,7 +59,8 @@ struct JoinMeasures {
 };
 
 // Position and velocity are limits from both sides, from samples 10 microseconds apart.
-// Gives   with `enough`: acceleration_ratio is exact where it is above the limit, else only known to
+// Gives   with `enough`: acceleration_ratio is exact where it is above the limit, else only known
+// to
 //         be below it; then few samples are taken of a join that is good.
 // Cost    8 samples, and 4 to 60 for accelerations.
 JoinMeasures measure_join(const JoinInput& input, const JoinLimits* enough = nullptr);

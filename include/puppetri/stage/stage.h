@@ -62,9 +62,9 @@ class Stage final : public net::MovementHost {
     // Rows in order of start, then of arrival. May be asked while the run goes on.
     std::span<const ScoreEntry> score() const;
 
-    // Time goes on to `at` and nothing is called before: what an instant leaves to be settled (limbs
-    // that were cut and that nobody took, ...) is settled for all earlier ones.
-    // Needs  `at` not before the last call's time.
+    // Time goes on to `at` and nothing is called before: what an instant leaves to be settled
+    // (limbs that were cut and that nobody took, ...) is settled for all earlier ones. Needs  `at`
+    // not before the last call's time.
     void pass_to(SimTime at);
     // The pose of an actor at any instant, as its movements have it so far; of instants that have
     // passed it stays so. Without the turn of the head after what it looks at, which is laid over
