@@ -79,7 +79,7 @@ bool Engine::draw_exponential(double mean_s, std::uint64_t key, std::uint64_t& c
         ahead.size = ahead.count != count ? 1 : std::min(more, Ahead::kMost);
         ahead.at = 0;
         for (std::uint32_t i = 0; i < ahead.size; ++i) {
-            ahead.ticks[i] = exponential_ticks(mean_s, random_bits(key, count + i));
+            ahead.ticks[i] = exponential_ticks(mean_s, random_bits(key, count + i) ^ flip_);
         }
     }
     ticks = ahead.ticks[ahead.at++];
@@ -176,7 +176,7 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
         if (options_.timekeeper != nullptr) {
             return wait_for(low, high);
         }
-        RandomStream stream{key, count};
+        RandomStream stream{key, count, flip_};
         ticks = stream.between(low, high);
         count = stream.count;
         choice.kind = ChoiceKind::kInterval;
@@ -218,7 +218,7 @@ bool Engine::draw(const DurationTable& d, std::uint64_t key, std::uint64_t& coun
                 return wait_for(choice.low.ticks, choice.high.ticks);
             }
         }
-        RandomStream stream{key, count};
+        RandomStream stream{key, count, flip_};
         const double seconds = sample(d.distribution, parameters, stream);
         count = stream.count;
         const double exact = seconds * static_cast<double>(kTicksPerSecond);

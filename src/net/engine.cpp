@@ -36,7 +36,8 @@ Engine::Engine(const Net& net, Chooser& chooser, const EngineOptions& options)
       tables_(&net.tables()),
       chooser_(&chooser),
       random_(chooser.draws_from_streams()),
-      options_(options) {
+      options_(options),
+      flip_(options.antithetic ? ~std::uint64_t{0} : 0) {
     const NetTables& n = *tables_;
     const std::uint64_t seed = options.seed;
     hot_.resize(n.transitions.size());

@@ -27,6 +27,7 @@ struct Player::Data final : net::EngineListener {
         e.listener = options.sink != nullptr ? this : nullptr;
         e.beat = options.beat.ticks;
         e.firings_per_instant = options.firings_per_instant;
+        e.antithetic = options.antithetic;
         return e;
     }
     void fired(SimTime at, net::TransitionIndex t) override { options.sink->fired(at, t); }

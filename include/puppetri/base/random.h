@@ -42,8 +42,10 @@ constexpr std::uint64_t stream_key(std::uint64_t seed, std::string_view element_
 struct RandomStream {
     std::uint64_t key = 0;
     std::uint64_t count = 0;
+    // All bits set: the antithetic stream, whose uniform() is 1 - u where the other's is u.
+    std::uint64_t flip = 0;
 
-    constexpr std::uint64_t bits() { return random_bits(key, count++); }
+    constexpr std::uint64_t bits() { return random_bits(key, count++) ^ flip; }
     // In (0, 1), never 0 or 1. One draw.
     constexpr double uniform() { return uniform_from_bits(bits()); }
     // In [0, n), each equally likely, without bias. Needs n >= 1. One draw, rarely more.

@@ -41,6 +41,9 @@ struct EngineOptions {
     // that no event sets. Not with RandomChooser.
     bool free = false;
     std::uint32_t free_events = 0;
+    // Durations and delays are drawn from 1 - u where they would be drawn from u (antithetic
+    // variates). Ties and tokens of `any` places are as without.
+    bool antithetic = false;
     // Keeps the clocks instead of the engine. Not with RandomChooser, nor with a host.
     Timekeeper* timekeeper = nullptr;
 };
@@ -279,6 +282,7 @@ class Engine final : private Code::Reader {
     Chooser* chooser_;
     bool random_;
     EngineOptions options_;
+    std::uint64_t flip_;  // RandomStream::flip of durations and delays
     State state_;
 
     // Scratch: computed from the state, or meaningless between two firings.

@@ -63,6 +63,7 @@ struct Options {
     LogSink* sink = nullptr;                      // outlives the player
     SimTime beat = {kTicksPerSecond};             // of paced nets
     std::uint32_t firings_per_instant = 100'000;  // after these the run stops and names the cycle
+    bool antithetic = false;                      // net::EngineOptions::antithetic
     bool record = false;                          // keep the outside events that were taken
 };
 
