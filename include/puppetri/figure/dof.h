@@ -48,10 +48,13 @@ struct DofSet {
 Transform transform_of(std::span<const Dof> dofs, const Transform& parent_from_joint_rest,
                        std::span<const double> values);
 
-// The values that come nearest to the transform: the inverse of transform_of where that has one.
-// At most three turns per joint. Turns about orthogonal axes are read exactly (Tait-Bryan angles;
-// the middle one within [-pi/2, pi/2] of its zero, so that values are told only up to the other
-// solution; in gimbal lock the last turn keeps its value of rest); of one or two, the nearest.
+// The values that come nearest to the transform: the inverse of transform_of where that has one. At
+// most three turns per joint, the middle one about an axis orthogonal to both others: then the
+// rotation is read exactly. Of the two triples that make it, the one within the ranges, then the
+// one with the smaller values; where the outer axes fall together, the last turn is that of rest.
+// Of fewer or other turns, each as near as it can come after those before it.
+// Source  Shuster and Markley, "Generalization of the Euler angles", Journal of the Astronautical
+//         Sciences 51 (2003) 123-132.
 void values_of(std::span<const Dof> dofs, const Transform& parent_from_joint_rest,
                const Transform& parent_from_joint, std::span<double> values);
 
@@ -62,8 +65,7 @@ void values_of(std::span<const Dof> dofs, const Transform& parent_from_joint_res
 //         toes; toes: lifts them). side leaves the midline (limbs) or leans to the figure's left
 //         (trunk, head). twist turns about the bone: trunk and head to the left, limbs inward (the
 //         front of the limb towards the midline). hips turn about the same axes as the trunk.
-// "spine" and "chest" are those joints of the skeleton; upperChest takes part as
-// "upper_chest".
+// "spine" and "chest" are those joints of the skeleton; the third of the trunk is "upper_chest".
 DofSet humanoid_dofs(const Figure& figure);
 
 // The joint of the normalised humanoid that the language calls so: "left_elbow" is leftLowerArm.

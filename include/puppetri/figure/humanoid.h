@@ -34,6 +34,7 @@ struct HumanoidMeasures {
     Vec3 head_top;  // from the joint head
     Vec3 eyes_head;
     double ankle_height_m = 0;
+    double leg_m = 0;  // thigh and shank, of the shorter leg
     double stance_half_width_m = 0;
     std::array<Arm, 2> arms;  // left, right
     std::array<Leg, 2> legs;
