@@ -28,17 +28,19 @@ Replication replication(std::uint64_t seed, std::uint64_t number, bool antitheti
 
 namespace {
 
+using Known = Journal::Known;
+
 // Numbers begin .. end of one stage, played by several threads.
 class Stage {
  public:
     Stage(const Experiment& experiment, const Plan& plan, std::uint64_t begin, std::uint64_t end,
-          std::vector<std::uint8_t>& finished, std::vector<double>& values, Outcome& outcome)
+          std::vector<Known>& state, std::vector<double>& values, Outcome& outcome)
         : experiment_(experiment),
           plan_(plan),
           end_(end),
           next_(begin),
           done_(begin),
-          finished_(finished),
+          state_(state),
           values_(values),
           outcome_(outcome) {}
 
@@ -67,7 +69,8 @@ class Stage {
             if (number >= end_ || stopped_.load(std::memory_order_relaxed)) {
                 return;
             }
-            if (finished_[number] != 0) {  // the journal knows it
+            const std::uint64_t turn = plan_.antithetic ? number / 2 : number;
+            if (state_[number] != Known::kNo || turn % plan_.ranks != plan_.rank) {
                 done_.fetch_add(1, std::memory_order_relaxed);
                 continue;
             }
@@ -78,11 +81,15 @@ class Stage {
             if (good) {
                 std::copy(row.begin(), row.end(),
                           values_.begin() + static_cast<std::ptrdiff_t>(number * width));
-                finished_[number] = 1;
+                state_[number] = Known::kFinished;
                 if (plan_.journal != nullptr) {
                     plan_.journal->keep(number, row);
                 }
             } else {
+                state_[number] = Known::kFailed;
+                if (plan_.journal != nullptr) {
+                    plan_.journal->keep_failure(number, fault);
+                }
                 outcome_.failures.push_back({r, std::move(fault)});
             }
             const std::uint64_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
@@ -99,18 +106,18 @@ class Stage {
     std::atomic<std::uint64_t> next_, done_;
     std::atomic<bool> stopped_{false};
     std::mutex mutex_;  // of everything below
-    std::vector<std::uint8_t>& finished_;
+    std::vector<Known>& state_;
     std::vector<double>& values_;
     Outcome& outcome_;
 };
 
 // The independent observations of one column.
 Tally observations(const Plan& plan, std::size_t width, std::size_t column,
-                   const std::vector<std::uint8_t>& finished, const std::vector<double>& values) {
+                   const std::vector<Known>& state, const std::vector<double>& values) {
     Tally tally;
     const std::uint64_t step = plan.antithetic ? 2 : 1;
-    for (std::uint64_t n = 0; n + step <= finished.size(); n += step) {
-        if (finished[n] == 0 || finished[n + step - 1] == 0) {
+    for (std::uint64_t n = 0; n + step <= state.size(); n += step) {
+        if (state[n] != Known::kFinished || state[n + step - 1] != Known::kFinished) {
             continue;  // half a pair says nothing
         }
         const double x = values[n * width + column];
@@ -127,30 +134,52 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
     PUP_REQUIRE(plan.replications >= 2 * pair);
     Outcome outcome;
     outcome.width = width;
-    std::vector<std::uint8_t> finished;
+    std::vector<Known> state;
     std::vector<double> values;
-    const auto play_to = [&](std::uint64_t begin, std::uint64_t end) {
-        finished.resize(end, 0);
-        values.resize(end * width);
-        for (std::uint64_t n = begin; plan.journal != nullptr && n < end; ++n) {
-            finished[n] = plan.journal->recall(n, std::span(values).subspan(n * width, width));
+    // What the journal knows of these numbers. False: something is missing.
+    const auto recall = [&](std::uint64_t begin) {
+        bool all = true;
+        for (std::uint64_t n = begin; n < state.size(); ++n) {
+            if (state[n] == Known::kNo && plan.journal != nullptr) {
+                Diagnostic fault;
+                state[n] =
+                    plan.journal->recall(n, std::span(values).subspan(n * width, width), fault);
+                if (state[n] == Known::kFailed) {
+                    outcome.failures.push_back(
+                        {replication(plan.seed, n, plan.antithetic), std::move(fault)});
+                }
+            }
+            all = all && state[n] != Known::kNo;
         }
-        Stage(experiment, plan, begin, end, finished, values, outcome).play();
+        return all;
+    };
+    const auto play_to = [&](std::uint64_t end) {
+        const std::uint64_t begin = state.size();
+        state.resize(end, Known::kNo);
+        values.resize(end * width);
+        recall(begin);
+        Stage(experiment, plan, begin, end, state, values, outcome).play();
+        while (plan.ranks > 1 && !outcome.interrupted && !recall(begin)) {
+            if (plan.journal == nullptr || !plan.journal->wait()) {
+                outcome.missing = true;
+                break;
+            }
+        }
     };
     const auto whole_pairs = [&](std::uint64_t n) { return (n + pair - 1) / pair * pair; };
 
     const std::uint64_t first = whole_pairs(plan.replications);
     const auto observed = [&](std::size_t column) {
-        return observations(plan, width, column, finished, values);
+        return observations(plan, width, column, state, values);
     };
     // Independent observations of the first stage: fewer than planned where some failed
     std::vector<std::uint64_t> first_stage(width);
-    play_to(0, first);
+    play_to(first);
     for (std::size_t c = 0; c < width; ++c) {
         first_stage[c] = observed(c).count();
     }
-    while (plan.precision.wanted() && !outcome.interrupted) {
-        std::uint64_t needed = finished.size();
+    while (plan.precision.wanted() && !outcome.interrupted && !outcome.missing) {
+        std::uint64_t needed = state.size();
         for (const std::size_t c : plan.precise) {
             if (first_stage[c] < 2) {
                 continue;
@@ -160,15 +189,15 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
             const std::uint64_t missing =
                 replications_needed(so_far, first_stage[c], plan.precision, plan.level) -
                 so_far.count();
-            needed = std::max(needed, finished.size() + pair * missing);
+            needed = std::max(needed, state.size() + pair * missing);
         }
         const std::uint64_t limit = std::max<std::uint64_t>(first, whole_pairs(plan.at_most));
         outcome.precise_enough = needed <= limit;
         const std::uint64_t next = std::min(needed, limit);
-        if (next <= finished.size()) {
+        if (next <= state.size()) {
             break;
         }
-        play_to(finished.size(), next);
+        play_to(next);
     }
 
     for (std::size_t c = 0; c < width; ++c) {
@@ -177,8 +206,8 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
                                     ? staged_confidence(all, first_stage[c], plan.level)
                                     : confidence(all, plan.level));
     }
-    for (std::uint64_t n = 0; n < finished.size(); ++n) {
-        if (finished[n] != 0) {
+    for (std::uint64_t n = 0; n < state.size(); ++n) {
+        if (state[n] == Known::kFinished) {
             outcome.numbers.push_back(n);
             const auto row = std::span(values).subspan(n * width, width);
             outcome.values.insert(outcome.values.end(), row.begin(), row.end());

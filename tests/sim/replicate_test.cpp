@@ -168,19 +168,28 @@ TEST_CASE("a replication that fails is told with its seed, and the others go on"
 namespace {
 class Memory final : public Journal {
  public:
-    bool recall(std::uint64_t number, std::span<double> values) override {
+    Known recall(std::uint64_t number, std::span<double> values, Diagnostic& fault) override {
+        if (failed.count(number) != 0) {
+            fault.code = failed[number];
+            return Known::kFailed;
+        }
         const auto it = rows.find(number);
         if (it == rows.end()) {
-            return false;
+            return Known::kNo;
         }
         std::copy(it->second.begin(), it->second.end(), values.begin());
-        return true;
+        return Known::kFinished;
     }
     void keep(std::uint64_t number, std::span<const double> values) override {
         rows[number].assign(values.begin(), values.end());
         ++played;
     }
+    void keep_failure(std::uint64_t number, const Diagnostic& fault) override {
+        failed[number] = fault.code;
+        ++played;
+    }
     std::map<std::uint64_t, std::vector<double>> rows;
+    std::map<std::uint64_t, std::string> failed;
     int played = 0;
 };
 }  // namespace
@@ -202,6 +211,24 @@ TEST_CASE("an interrupted experiment goes on from its journal to the same number
     CHECK(memory.played == 30);
     CHECK(resumed.values == whole.values);
     CHECK(resumed.means[0].half_width == whole.means[0].half_width);
+}
+
+TEST_CASE("several processes that share a journal get the numbers of one") {
+    const QueueNet q = make_queue(2, 1, net::exponential(1));
+    const NetExperiment experiment(q.net, {{kBusy, q.busy}},
+                                   {.limits = {.until = net::seconds(100)}});
+    Plan plan{.seed = 4, .replications = 31};
+    const Outcome whole = replicate(experiment, plan);
+    Memory memory;
+    plan.journal = &memory;
+    plan.ranks = 3;
+    Outcome last;
+    for (plan.rank = 0; plan.rank < 3; ++plan.rank) {
+        last = replicate(experiment, plan);
+        CHECK(last.missing == (plan.rank < 2));
+    }
+    CHECK(memory.played == 31);
+    CHECK(last.values == whole.values);
 }
 
 }  // namespace puppetri::sim

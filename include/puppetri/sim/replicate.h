@@ -41,14 +41,19 @@ class Experiment {
     virtual std::unique_ptr<Runner> runner() const = 0;
 };
 
-// What has been played before, and what is to outlive this process: a killed sweep goes on.
+// What has been played before, here or by other processes, and what is to outlive this one: a
+// killed sweep goes on.
 class Journal {
  public:
+    enum class Known : std::uint8_t { kNo, kFinished, kFailed };
     virtual ~Journal() = default;
-    // Called before anything is played, in ascending order. False: not known.
-    virtual bool recall(std::uint64_t number, std::span<double> values) = 0;
+    virtual Known recall(std::uint64_t number, std::span<double> values, Diagnostic& fault) = 0;
     // Called as replications end, one at a time, in any order.
     virtual void keep(std::uint64_t number, std::span<const double> values) = 0;
+    virtual void keep_failure(std::uint64_t number, const Diagnostic& fault) = 0;
+    // Some replications of others are missing: looks what there is by now, after a while.
+    // Gives   false if nobody is to be waited for.
+    virtual bool wait() { return false; }
 };
 
 struct Plan {
@@ -65,6 +70,9 @@ struct Plan {
     bool (*go_on)(void* context, std::uint64_t done, std::uint64_t needed) = nullptr;
     void* context = nullptr;
     Journal* journal = nullptr;
+    // One of several processes, each with its share of the numbers (pairs stay together), that tell
+    // each other by their journals.
+    unsigned rank = 0, ranks = 1;
 };
 
 struct Failure {
@@ -80,6 +88,7 @@ struct Outcome {
     std::vector<Failure> failures;  // in order of number; left out of all means
     std::vector<Confidence> means;  // per column
     bool interrupted = false;       // go_on said so
+    bool missing = false;           // shares of other processes are not there yet
     bool precise_enough = true;     // false: at_most came first
 
     std::span<const double> row(std::size_t i) const {
