@@ -2,6 +2,8 @@
 // Sampling of editable clips, their defects, the travel of their root.
 #include "puppetri/motion/clip.h"
 
+#include <algorithm>
+#include <array>
 #include <set>
 
 #include "clip_segment.h"
@@ -233,13 +235,39 @@ double sample_rate(const NumberTrack& track, double t_s, bool loops, double dura
     return rate_at(track, t_s, loops, duration_s);
 }
 
-ClipBinding bind_clip(const Clip& clip, const figure::Skeleton& skeleton) {
+ClipBinding bind_clip(const Clip& clip, const figure::Skeleton& skeleton,
+                      const figure::DofSet* dofs) {
     ClipBinding binding;
     for (const RotationTrack& track : clip.rotations) {
         binding.rotations.push_back(skeleton.find(track.target));
     }
     for (const VectorTrack& track : clip.translations) {
         binding.translations.push_back(skeleton.find(track.target));
+    }
+    for (std::size_t i = 0; dofs != nullptr && i < clip.numbers.size(); ++i) {
+        const figure::DofIndex dof = dofs->find(clip.numbers[i].target);
+        if (!dof.valid()) {
+            continue;
+        }
+        const figure::JointIndex joint = dofs->dofs[dof.value].joint;
+        const figure::DofSet::Range range = dofs->of_joint(joint);
+        if (range.count > ClipBinding::kMostDofs) {
+            continue;
+        }
+        auto found = std::find_if(binding.joints.begin(), binding.joints.end(),
+                                  [&](const auto& j) { return j.joint == joint; });
+        if (found == binding.joints.end()) {
+            const auto first = dofs->dofs.begin() + range.first;
+            binding.joints.push_back({joint,
+                                      skeleton.joints[joint.value].parent_from_joint_rest,
+                                      {first, first + range.count},
+                                      std::vector<std::int32_t>(range.count, -1)});
+            found = binding.joints.end() - 1;
+        }
+        found->tracks[dof.value - range.first] = static_cast<std::int32_t>(i);
+    }
+    for (ClipBinding::Joint& joint : binding.joints) {
+        joint.all = std::find(joint.tracks.begin(), joint.tracks.end(), -1) == joint.tracks.end();
     }
     return binding;
 }
@@ -260,6 +288,22 @@ void sample_clip(const Clip& clip, const ClipBinding& binding, double t_s, figur
             out.parent_from_joint[j.value].translation =
                 sample(clip.translations[i], t_s, clip.loops, clip.duration_s);
         }
+    }
+    for (const ClipBinding::Joint& joint : binding.joints) {
+        PUP_REQUIRE(joint.joint.value < out.parent_from_joint.size());
+        Transform& at = out.parent_from_joint[joint.joint.value];
+        std::array<double, ClipBinding::kMostDofs> room{};
+        const std::span<double> values(room.data(), joint.dofs.size());
+        if (!joint.all) {
+            figure::values_of(joint.dofs, joint.parent_from_joint_rest, at, values);
+        }
+        for (std::size_t d = 0; d < joint.dofs.size(); ++d) {
+            if (joint.tracks[d] >= 0) {
+                values[d] = sample(clip.numbers[static_cast<std::size_t>(joint.tracks[d])], t_s,
+                                   clip.loops, clip.duration_s);
+            }
+        }
+        at = figure::transform_of(joint.dofs, joint.parent_from_joint_rest, values);
     }
 }
 

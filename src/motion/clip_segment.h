@@ -119,7 +119,7 @@ typename Key::Rate rate_in(const Segment<Key>& s, double t_s) {
 
 // Time within the clip.
 inline double clip_time(double t_s, bool loops, double duration_s) {
-    if (!loops || duration_s <= 0) {
+    if (!loops || duration_s <= 0 || (t_s >= 0 && t_s <= duration_s)) {
         return clamp(t_s, 0, duration_s);
     }
     const double rounds = std::floor(t_s / duration_s);

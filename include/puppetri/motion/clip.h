@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/figure/dof.h"
 #include "puppetri/figure/skeleton.h"
 #include "puppetri/math/spline.h"
 
@@ -88,8 +89,8 @@ struct Clip {
 // source in them.
 Status check(const Clip& clip, std::string_view file = "");
 
-// The value of one track. `loops` and `duration_s` are the clip's; time is taken into [0, duration]
-// by wrapping where it loops, else by stopping at the ends.
+// The value of one track. `loops` and `duration_s` are the clip's. Time outside [0, duration] is
+// taken into it by wrapping where the clip loops, else by stopping at the ends.
 // Needs   at least one key; a checked clip.
 // Cost    logarithmic in the keys, no allocation.
 Quat sample(const RotationTrack& track, double t_s, bool loops, double duration_s);
@@ -104,13 +105,26 @@ double sample_rate(const NumberTrack& track, double t_s, bool loops, double dura
 // Which joint of a skeleton each track moves: looked up once, tracks in the clip's order. None
 // where the skeleton has no such joint.
 struct ClipBinding {
-    std::vector<figure::JointIndex> rotations, translations;
-};
-ClipBinding bind_clip(const Clip& clip, const figure::Skeleton& skeleton);
+    // A joint that has tracks of degrees of freedom.
+    struct Joint {
+        figure::JointIndex joint;
+        Transform parent_from_joint_rest;
+        std::vector<figure::Dof> dofs;     // all of the joint, at most kMostDofs
+        std::vector<std::int32_t> tracks;  // one per dof: in Clip::numbers, -1 for none
+        bool all = false;                  // every dof has a track
+    };
+    static constexpr std::size_t kMostDofs = 6;
 
-// Writes the joints that the clip has tracks of, and nothing else; degrees of freedom are the
-// figure's to apply (sample them one by one). The travel of a looping clip starts anew with every
-// round: see root_travel. Cost: no allocation.
+    std::vector<figure::JointIndex> rotations, translations;
+    std::vector<Joint> joints;
+};
+// `dofs` of the figure; null: tracks of degrees of freedom move nothing.
+ClipBinding bind_clip(const Clip& clip, const figure::Skeleton& skeleton,
+                      const figure::DofSet* dofs = nullptr);
+
+// Writes the joints that the clip has tracks of, and nothing else. Degrees of freedom of a joint
+// that have no track stay as the pose has them (figure::values_of), if others of it have one. The
+// travel of a looping clip starts anew with every round: see root_travel. Cost: no allocation.
 void sample_clip(const Clip& clip, const ClipBinding& binding, double t_s, figure::Pose& out);
 
 // Where the root has come since t = 0, planar (x, z and heading), relative to where it stood then:

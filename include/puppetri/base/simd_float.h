@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// A few floats side by side: 1 (the scalar twin), 4 (SSE2, NEON, WebAssembly), 8 (AVX2, only in
+// sources that are compiled for it). One kernel written over these types gets the same bits at
+// every width: there are only + - * /, square roots, selections and permutations, all exactly
+// specified, and nothing is fused.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#if defined(__AVX2__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace puppetri::simd {
+
+struct Float1 {
+    static constexpr int kLanes = 1;
+    float v;
+
+    static Float1 load(const float* from) { return {*from}; }
+    static Float1 all(float x) { return {x}; }
+    void store(float* to) const { *to = v; }
+    // Lane i is from[index[i]].
+    static Float1 gather(const float* from, const std::int32_t* index) { return {from[index[0]]}; }
+
+    friend Float1 operator+(Float1 a, Float1 b) { return {a.v + b.v}; }
+    friend Float1 operator-(Float1 a, Float1 b) { return {a.v - b.v}; }
+    friend Float1 operator*(Float1 a, Float1 b) { return {a.v * b.v}; }
+    friend Float1 operator/(Float1 a, Float1 b) { return {a.v / b.v}; }
+    friend Float1 sqrt(Float1 a) { return {std::sqrt(a.v)}; }
+    // a where x < 0, else b.
+    friend Float1 where_negative(Float1 x, Float1 a, Float1 b) { return x.v < 0 ? a : b; }
+};
+
+struct Float4 {
+    static constexpr int kLanes = 4;
+    typedef float Vector __attribute__((vector_size(16)));
+    Vector v;
+
+    static Float4 load(const float* from) {
+        Vector v;
+        __builtin_memcpy(&v, from, sizeof v);
+        return {v};
+    }
+    static Float4 all(float x) { return {Vector{x, x, x, x}}; }
+    void store(float* to) const { __builtin_memcpy(to, &v, sizeof v); }
+    static Float4 gather(const float* from, const std::int32_t* index) {
+        return {Vector{from[index[0]], from[index[1]], from[index[2]], from[index[3]]}};
+    }
+
+    friend Float4 operator+(Float4 a, Float4 b) { return {a.v + b.v}; }
+    friend Float4 operator-(Float4 a, Float4 b) { return {a.v - b.v}; }
+    friend Float4 operator*(Float4 a, Float4 b) { return {a.v * b.v}; }
+    friend Float4 operator/(Float4 a, Float4 b) { return {a.v / b.v}; }
+    friend Float4 sqrt(Float4 a) {
+#if defined(__SSE2__)
+        return {reinterpret_cast<Vector>(_mm_sqrt_ps(reinterpret_cast<__m128>(a.v)))};
+#else
+        return {Vector{std::sqrt(a.v[0]), std::sqrt(a.v[1]), std::sqrt(a.v[2]), std::sqrt(a.v[3])}};
+#endif
+    }
+    friend Float4 where_negative(Float4 x, Float4 a, Float4 b) { return {x.v < 0.0f ? a.v : b.v}; }
+};
+
+#if defined(__AVX2__)
+struct Float8 {
+    static constexpr int kLanes = 8;
+    __m256 v;
+
+    static Float8 load(const float* from) { return {_mm256_loadu_ps(from)}; }
+    static Float8 all(float x) { return {_mm256_set1_ps(x)}; }
+    void store(float* to) const { _mm256_storeu_ps(to, v); }
+    static Float8 gather(const float* from, const std::int32_t* index) {
+        return {_mm256_setr_ps(from[index[0]], from[index[1]], from[index[2]], from[index[3]],
+                               from[index[4]], from[index[5]], from[index[6]], from[index[7]])};
+    }
+    // Lane i of the result is lane index[i] of this one.
+    Float8 permuted(const std::int32_t* index) const {
+        return {_mm256_permutevar8x32_ps(
+            v, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)))};
+    }
+
+    friend Float8 operator+(Float8 a, Float8 b) { return {_mm256_add_ps(a.v, b.v)}; }
+    friend Float8 operator-(Float8 a, Float8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
+    friend Float8 operator*(Float8 a, Float8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+    friend Float8 operator/(Float8 a, Float8 b) { return {_mm256_div_ps(a.v, b.v)}; }
+    friend Float8 sqrt(Float8 a) { return {_mm256_sqrt_ps(a.v)}; }
+    friend Float8 where_negative(Float8 x, Float8 a, Float8 b) {
+        return {_mm256_blendv_ps(b.v, a.v, _mm256_cmp_ps(x.v, _mm256_setzero_ps(), _CMP_LT_OQ))};
+    }
+};
+#endif
+
+}  // namespace puppetri::simd
