@@ -6,6 +6,7 @@
 #include "limb_planes.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/limb_ik.h"
+#include "puppetri/motion/two_bone_ik.h"
 #include "trunk.h"
 
 namespace puppetri::motion {
@@ -18,6 +19,29 @@ using figure::Pose;
 // Raising the heel by an angle lets the shank lean by about a third of it: six rounds leave a
 // thousandth.
 constexpr int kHeelRounds = 6;
+
+// The part of the full reach from which on a limb straightens more and more slowly.
+constexpr double kSoftLeg = 0.998, kSoftArm = 0.995;
+
+// Each joint is clamped as it is set; here only the hinge's range shapes the reach.
+LimbShape without_ball_limits(LimbShape shape) {
+    shape.start_limit = shape.end_limit = {};
+    return shape;
+}
+
+LimbPose softly(const LimbIk& ik, double soft, const Transform& goal, Vec3 swivel_zero,
+                CirclePoint swivel) {
+    const Vec3 start = ik.shape().start, way = goal.translation - start;
+    const double wanted = length(way), eased = eased_reach_m(wanted, ik.farthest_m(), soft);
+    return ik
+        .solve_free({.kind = LimbGoalKind::kPose,
+                     .position_parent = wanted > 0 ? start + way * (eased / wanted) : start,
+                     .rotation_parent = goal.rotation,
+                     .swivel_zero_parent = swivel_zero,
+                     .line_on_root = normalized(ik.shape().upper)},
+                    swivel)
+        .pose;
+}
 
 class Solver {
  public:
@@ -74,22 +98,17 @@ class Solver {
         const Vec3 toes_world = pitch_up > 0 ? heel_world + rotate(about_y(heading_of(ahead_world)),
                                                                    leg.toes_foot - leg.heel_foot)
                                              : foot * leg.toes_foot;
+        const LimbIk ik(without_ball_limits(
+            limb_shape(f_, side == figure::kLeft ? Limb::kLeftLeg : Limb::kRightLeg)));
+        const CirclePoint swivel =
+            circle_point(side == figure::kLeft ? -control.swivel_rad : control.swivel_rad);
         Quat hip, knee;
         double turned_rad = 0;
         for (int round = 0;; ++round) {
             const Transform goal = pelvis_from_world * foot;
-            const LimbResult limb = solve_limb(
-                {.start = leg.hip_pelvis,
-                 .goal = goal,
-                 .axis = {0, -1, 0},
-                 .hinge = {1, 0, 0},
-                 .swivel_zero = pole,
-                 .swivel_rad = side == figure::kLeft ? -control.swivel_rad : control.swivel_rad,
-                 .upper_m = leg.thigh_m,
-                 .lower_m = leg.shank_m,
-                 .soft = 0.998});
-            hip = set(leg.hip, limb.start_rotation);
-            knee = set(leg.knee, limb.middle_rotation);
+            const LimbPose limb = softly(ik, kSoftLeg, goal, pole, swivel);
+            hip = set(leg.hip, limb.start);
+            knee = set(leg.knee, limb.hinge);
             const Quat wanted = conjugate(hip * knee) * goal.rotation;
             const Quat ankle = figure::clamp_to_limit(f_.limits[leg.ankle.value], wanted);
             out_.parent_from_joint[leg.ankle.value].rotation = ankle;
@@ -134,16 +153,12 @@ class Solver {
         const Transform goal = inverse(Transform{clavicle, arm.clavicle_chest}) * chest_from_hand;
         const Vec3 direction = normalized(goal.translation - arm.shoulder_clavicle, {0, -1, 0});
         const Vec3 axis{s, 0, 0};
-        const LimbResult limb = solve_limb({.start = arm.shoulder_clavicle,
-                                            .goal = goal,
-                                            .axis = axis,
-                                            .hinge = {0, -s, 0},
-                                            .swivel_zero = elbow_direction(s, direction),
-                                            .swivel_rad = s * control.swivel_rad,
-                                            .upper_m = arm.upper_m,
-                                            .lower_m = arm.fore_m});
-        const Quat shoulder = set(arm.shoulder, limb.start_rotation);
-        const Quat elbow = set(arm.elbow, limb.middle_rotation);
+        const LimbIk ik(without_ball_limits(
+            limb_shape(f_, side == figure::kLeft ? Limb::kLeftArm : Limb::kRightArm)));
+        const LimbPose limb = softly(ik, kSoftArm, goal, elbow_direction(s, direction),
+                                     circle_point(s * control.swivel_rad));
+        const Quat shoulder = set(arm.shoulder, limb.start);
+        const Quat elbow = set(arm.elbow, limb.hinge);
         const Quat hand = set(arm.hand, conjugate(shoulder * elbow) * goal.rotation);
         set(arm.shoulder_twist,
             from_axis_angle(axis, -to_swing_twist(shoulder, axis).twist_rad / 2));

@@ -9,8 +9,8 @@
 #include "puppetri/motion/gaze.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/inertialize.h"
-#include "puppetri/motion/limb_ik.h"
 #include "puppetri/motion/solve_controls.h"
+#include "puppetri/motion/two_bone_ik.h"
 
 using namespace puppetri;
 using namespace puppetri::motion;
@@ -91,34 +91,6 @@ TEST_CASE("the middle joint's angle has no corner as a target leaves the reach [
         }
         before = now;
         slope_before = slope;
-    }
-}
-
-TEST_CASE("the seven-degree limb meets position and rotation of its goal at every swivel [law]") {
-    Lcg random;
-    const Vec3 axis{1, 0, 0}, hinge{0, -1, 0};
-    for (int i = 0; i < 3000; ++i) {
-        const Vec3 start = random.vector() * 0.1;
-        const Vec3 way = normalized(random.vector()) * (0.15 + 0.2 * (random.next() + 1));
-        const LimbIk ik{.start = start,
-                        .goal = {random.rotation(), start + way},
-                        .axis = axis,
-                        .hinge = hinge,
-                        .swivel_zero = random.vector(),
-                        .swivel_rad = 3 * random.next(),
-                        .upper_m = 0.32,
-                        .lower_m = 0.27};
-        const LimbResult r = solve_limb(ik);
-        const Vec3 wrist =
-            start + rotate(r.start_rotation,
-                           axis * ik.upper_m + rotate(r.middle_rotation, axis * ik.lower_m));
-        CHECK(length(wrist - ik.goal.translation) < 1e-9);
-        CHECK(angle_between(r.start_rotation * r.middle_rotation * r.end_rotation,
-                            ik.goal.rotation) < 1e-6);
-        // The hinge turns about its axis alone, by a positive angle.
-        const Vec3 v = to_rotation_vector(r.middle_rotation);
-        CHECK(length(cross(v, hinge)) < 1e-9);
-        CHECK(dot(v, hinge) >= 0);
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The triangle of two bones: where the middle joint is when both ends are known. Legs use it as it
-// is, arms through limb_ik.h.
+// The triangle of two bones: where the middle joint is when both ends are known. For the rotations
+// of a limb's joints see limb_ik.h.
 #pragma once
 #include "puppetri/math/transform.h"
 
@@ -28,5 +28,8 @@ struct TwoBoneResult {
     double residual_m = 0;  // distance from end to target
 };
 TwoBoneResult solve_two_bone(const TwoBoneIk& ik);
+
+// The easing alone: how far a limb that can reach `full_m` goes for a target so far away.
+double eased_reach_m(double wanted_m, double full_m, double soft);
 
 }  // namespace puppetri::motion
