@@ -101,4 +101,19 @@ std::string bone_name(BoneNames names, std::string_view vrm_name) {
     return std::string(vrm_name);
 }
 
+std::vector<std::string> humanoid_bones() {
+    std::vector<std::string> list;
+    for (const Row& row : kMiddle) {
+        if (row.vrm != "root") {
+            list.emplace_back(row.vrm);
+        }
+    }
+    for (const char* side : {"left", "right"}) {
+        for (const Row& row : kSide) {
+            list.push_back(side + std::string(row.vrm));
+        }
+    }
+    return list;
+}
+
 }  // namespace puppetri::io

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace puppetri::io {
 
@@ -19,5 +20,8 @@ std::optional<BoneNames> parse_bone_names(std::string_view text);
 // Source  VRM 1.0 humanoid bones; Mixamo's auto-rigger; Unreal Engine's mannequin; Rigify's human
 // metarig.
 std::string bone_name(BoneNames names, std::string_view vrm_name);
+
+// All bones that the sets have names for, in VRM's names.
+std::vector<std::string> humanoid_bones();
 
 }  // namespace puppetri::io
