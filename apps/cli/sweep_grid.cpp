@@ -93,11 +93,13 @@ Result<std::vector<std::string>, std::string> parse_range(const std::string& tex
     const std::size_t dots = text.find("..");
     const std::size_t by = text.find(" by ", dots);
     auto low = decimal(trimmed(text.substr(0, dots)));
-    auto high = decimal(trimmed(text.substr(dots + 2, by == std::string::npos ? by : by - dots - 2)));
+    auto high =
+        decimal(trimmed(text.substr(dots + 2, by == std::string::npos ? by : by - dots - 2)));
     std::optional<Decimal> step =
         by == std::string::npos ? Decimal{1, 0, ""} : decimal(trimmed(text.substr(by + 4)));
     if (!low || !high || !step) {
-        return Unexpected("'" + text + "' is no range of numbers: write 2..6, or 5 s .. 20 s by 5 s");
+        return Unexpected("'" + text +
+                          "' is no range of numbers: write 2..6, or 5 s .. 20 s by 5 s");
     }
     if (by == std::string::npos && (!high->unit.empty() || high->places + low->places > 0)) {
         return Unexpected("'" + text + "' needs a step: write " + text + " by STEP");
@@ -111,7 +113,8 @@ Result<std::vector<std::string>, std::string> parse_range(const std::string& tex
     widen(*high, places);
     widen(*step, places);
     if (step->digits <= 0 || high->digits < low->digits) {
-        return Unexpected("'" + text + "' is empty: the step has to be above 0, and the end not "
+        return Unexpected("'" + text +
+                          "' is empty: the step has to be above 0, and the end not "
                           "below the beginning");
     }
     if ((high->digits - low->digits) / step->digits >= static_cast<std::int64_t>(kMostValues)) {
@@ -131,7 +134,8 @@ Result<Varied, std::string> parse_varied(const std::string& text) {
     Varied v;
     v.path = trimmed(text.substr(0, equals));
     if (equals == std::string::npos || v.path.empty()) {
-        return Unexpected("'" + text + "' names no parameter: write PARAMETER=VALUES, as a.out=2..6");
+        return Unexpected("'" + text +
+                          "' names no parameter: write PARAMETER=VALUES, as a.out=2..6");
     }
     const std::string values = trimmed(text.substr(equals + 1));
     const std::vector<std::string> parts = split_list(values);

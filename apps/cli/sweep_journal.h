@@ -17,8 +17,8 @@ namespace puppetri::cli {
 // modulo `ranks`.
 struct Share {
     unsigned rank = 0, ranks = 1;
-    // Its fellows run at the same time (mpirun), so that waiting for them makes sense; else they may
-    // run one after another (a Slurm array).
+    // Its fellows run at the same time (mpirun), so that waiting for them makes sense; else they
+    // may run one after another (a Slurm array).
     bool together = false;
 };
 

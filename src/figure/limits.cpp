@@ -36,7 +36,7 @@ bool surely_inside(const JointLimit& limit, Quat q) {
     const double n2 = along * along + q.w * q.w, across2 = 1 - n2;
     const double twist = kPi * std::fabs(along);  // times 1 / n, below
     const double room = along < 0 ? -limit.lo_rad : limit.hi_rad;
-    if (!(room > 0) || twist * twist > room * room * n2) {
+    if (!(limit.lo_rad <= 0 && limit.hi_rad >= 0 && room > 0) || twist * twist > room * room * n2) {
         return false;
     }
     if (limit.kind == LimitKind::kHinge) {

@@ -3,6 +3,7 @@
 // base/simd_float.h, so that one limb and a crowd get the same bits.
 #pragma once
 #include "puppetri/base/simd_double.h"
+#include "puppetri/base/simd_float.h"
 #include "puppetri/motion/limb_tables.h"
 
 namespace puppetri::motion::kernel {

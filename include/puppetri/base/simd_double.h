@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A few doubles side by side: 1 (the scalar twin), 2 (SSE2, NEON, WebAssembly). One kernel written
-// over these types gets the same bits at every width: there are only + - * /, square roots and
-// selections, all exactly specified, and nothing is fused.
+// A few doubles side by side: 1 (the scalar twin), 2 (SSE2, NEON, WebAssembly), 4 (AVX2, only in
+// sources that are compiled for it). As in simd_float.h one kernel gets the same bits at every
+// width.
 #pragma once
 #include <cmath>
-#if defined(__SSE2__)
+#if defined(__AVX2__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
@@ -59,5 +61,27 @@ struct Double2 {
         return {x.v < 0.0 ? a.v : b.v};
     }
 };
+
+#if defined(__AVX2__)
+struct Double4 {
+    static constexpr int kLanes = 4;
+    using Scalar = double;
+    __m256d v;
+
+    static Double4 load(const double* from) { return {_mm256_loadu_pd(from)}; }
+    static Double4 all(double x) { return {_mm256_set1_pd(x)}; }
+    void store(double* to) const { _mm256_storeu_pd(to, v); }
+
+    friend Double4 operator+(Double4 a, Double4 b) { return {_mm256_add_pd(a.v, b.v)}; }
+    friend Double4 operator-(Double4 a, Double4 b) { return {_mm256_sub_pd(a.v, b.v)}; }
+    friend Double4 operator*(Double4 a, Double4 b) { return {_mm256_mul_pd(a.v, b.v)}; }
+    friend Double4 operator/(Double4 a, Double4 b) { return {_mm256_div_pd(a.v, b.v)}; }
+    friend Double4 operator-(Double4 a) { return {_mm256_xor_pd(a.v, _mm256_set1_pd(-0.0))}; }
+    friend Double4 sqrt(Double4 a) { return {_mm256_sqrt_pd(a.v)}; }
+    friend Double4 where_negative(Double4 x, Double4 a, Double4 b) {
+        return {_mm256_blendv_pd(b.v, a.v, _mm256_cmp_pd(x.v, _mm256_setzero_pd(), _CMP_LT_OQ))};
+    }
+};
+#endif
 
 }  // namespace puppetri::simd

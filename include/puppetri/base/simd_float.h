@@ -16,6 +16,7 @@ namespace puppetri::simd {
 
 struct Float1 {
     static constexpr int kLanes = 1;
+    using Scalar = float;
     float v;
 
     static Float1 load(const float* from) { return {*from}; }
@@ -28,6 +29,7 @@ struct Float1 {
     friend Float1 operator-(Float1 a, Float1 b) { return {a.v - b.v}; }
     friend Float1 operator*(Float1 a, Float1 b) { return {a.v * b.v}; }
     friend Float1 operator/(Float1 a, Float1 b) { return {a.v / b.v}; }
+    friend Float1 operator-(Float1 a) { return {-a.v}; }
     friend Float1 sqrt(Float1 a) { return {std::sqrt(a.v)}; }
     // a where x < 0, else b.
     friend Float1 where_negative(Float1 x, Float1 a, Float1 b) { return x.v < 0 ? a : b; }
@@ -35,6 +37,7 @@ struct Float1 {
 
 struct Float4 {
     static constexpr int kLanes = 4;
+    using Scalar = float;
     typedef float Vector __attribute__((vector_size(16)));
     Vector v;
 
@@ -53,6 +56,7 @@ struct Float4 {
     friend Float4 operator-(Float4 a, Float4 b) { return {a.v - b.v}; }
     friend Float4 operator*(Float4 a, Float4 b) { return {a.v * b.v}; }
     friend Float4 operator/(Float4 a, Float4 b) { return {a.v / b.v}; }
+    friend Float4 operator-(Float4 a) { return {-a.v}; }
     friend Float4 sqrt(Float4 a) {
 #if defined(__SSE2__)
         return {reinterpret_cast<Vector>(_mm_sqrt_ps(reinterpret_cast<__m128>(a.v)))};
@@ -66,6 +70,7 @@ struct Float4 {
 #if defined(__AVX2__)
 struct Float8 {
     static constexpr int kLanes = 8;
+    using Scalar = float;
     __m256 v;
 
     static Float8 load(const float* from) { return {_mm256_loadu_ps(from)}; }
@@ -85,6 +90,7 @@ struct Float8 {
     friend Float8 operator-(Float8 a, Float8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
     friend Float8 operator*(Float8 a, Float8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
     friend Float8 operator/(Float8 a, Float8 b) { return {_mm256_div_ps(a.v, b.v)}; }
+    friend Float8 operator-(Float8 a) { return {_mm256_xor_ps(a.v, _mm256_set1_ps(-0.0f))}; }
     friend Float8 sqrt(Float8 a) { return {_mm256_sqrt_ps(a.v)}; }
     friend Float8 where_negative(Float8 x, Float8 a, Float8 b) {
         return {_mm256_blendv_ps(b.v, a.v, _mm256_cmp_ps(x.v, _mm256_setzero_ps(), _CMP_LT_OQ))};

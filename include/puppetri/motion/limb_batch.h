@@ -4,6 +4,7 @@
 // goes.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "puppetri/motion/limb_ik.h"
@@ -26,17 +27,15 @@ struct LimbPosesSoa {
     std::span<T> residual_m;
 };
 
-// Gives   the first family of LimbIk::families at the swivel: for double the bits of
-//         LimbIk::solve_free. `_scalar` is the twin without vector instructions, with the same
-//         bits.
-// Cost    15 to 50 ns a limb; no allocation.
+// One at a time, as wide as every processor can, or as wide as this one can.
+enum class BatchWidth : std::uint8_t { kOne, kBase, kWidest };
+
+// Gives   the first family of LimbIk::families at the swivel; the same bits at every width, and for
+//         double those of LimbIk::solve_free.
+// Cost    10 to 40 ns a limb; no allocation.
 void solve_limbs_soa(const LimbIk& ik, const LimbGoalsSoa<double>& goals,
-                     const LimbPosesSoa<double>& poses);
+                     const LimbPosesSoa<double>& poses, BatchWidth width = BatchWidth::kWidest);
 void solve_limbs_soa(const LimbIk& ik, const LimbGoalsSoa<float>& goals,
-                     const LimbPosesSoa<float>& poses);
-void solve_limbs_scalar(const LimbIk& ik, const LimbGoalsSoa<double>& goals,
-                        const LimbPosesSoa<double>& poses);
-void solve_limbs_scalar(const LimbIk& ik, const LimbGoalsSoa<float>& goals,
-                        const LimbPosesSoa<float>& poses);
+                     const LimbPosesSoa<float>& poses, BatchWidth width = BatchWidth::kWidest);
 
 }  // namespace puppetri::motion
