@@ -65,8 +65,9 @@ double root_between(const Quartic& a, double lo, double hi, double at_lo, double
                 return s;
             }
         }
-        if (std::fabs(next - s) < 1e-16) {
-            return next;
+        // Newton's error squares: what a step of 1e-9 leaves is beyond the digits.
+        if (std::fabs(next - s) < 1e-9) {
+            return clamp(next - value(a, next) / slope(a, next), lo, hi);
         }
         s = next;
     }
@@ -75,7 +76,7 @@ double root_between(const Quartic& a, double lo, double hi, double at_lo, double
 
 class RootsOfQuarter {
  public:
-    RootsOfQuarter(const Quartic& a, int quarter, std::span<CirclePoint, 4> roots, int& count)
+    RootsOfQuarter(const Quartic& a, int quarter, std::span<SignChange, 4> roots, int& count)
         : a_(a), quarter_(quarter), roots_(roots), count_(count) {}
 
     // `b` belongs to s in [lo, hi].
@@ -85,13 +86,17 @@ class RootsOfQuarter {
             return;
         }
         if (changes == 1) {
-            add(root_between(a_, lo, hi, b[0], b[4]));
+            add(root_between(a_, lo, hi, b[0], b[4]), b[4] >= 0);
             return;
         }
         // Two roots that are one to double precision: f touches zero, or almost.
         if (hi - lo < 1e-9) {
-            add(lo);
-            add(hi);
+            if (changes == 2) {
+                add(lo, b[0] < 0);
+                add(hi, b[4] >= 0);
+            } else {
+                add(lo, b[4] >= 0);
+            }
             return;
         }
         Bernstein left, right, row = b;
@@ -108,21 +113,22 @@ class RootsOfQuarter {
     }
 
  private:
-    void add(double s) {
+    void add(double s, bool rising) {
         if (count_ == 4) {
             return;  // rounding has split a touching root
         }
         const double t = kTau * s, k = 1 / (1 + t * t);
         const double c = (1 - t * t) * k, n = 2 * t * k;
-        roots_[count_++] = quarter_ == 0   ? CirclePoint{c, n}
-                           : quarter_ == 1 ? CirclePoint{-n, c}
-                           : quarter_ == 2 ? CirclePoint{-c, -n}
-                                           : CirclePoint{n, -c};
+        const CirclePoint at = quarter_ == 0   ? CirclePoint{c, n}
+                               : quarter_ == 1 ? CirclePoint{-n, c}
+                               : quarter_ == 2 ? CirclePoint{-c, -n}
+                                               : CirclePoint{n, -c};
+        roots_[count_++] = {at, rising};
     }
 
     const Quartic& a_;
     int quarter_;
-    std::span<CirclePoint, 4> roots_;
+    std::span<SignChange, 4> roots_;
     int& count_;
 };
 
@@ -171,7 +177,7 @@ CirclePoint nearest(const Arc& arc, CirclePoint p) {
     return contains(arc, p) ? p : (dot(p, arc.from) >= dot(p, arc.to) ? arc.from : arc.to);
 }
 
-int sign_changes(const TrigPolynomial& f, std::span<CirclePoint, 4> roots) {
+int sign_changes(const TrigPolynomial& f, std::span<SignChange, 4> roots) {
     int count = 0;
     if (f.c2 == 0 && f.s2 == 0) {
         const double n = std::sqrt(f.c1 * f.c1 + f.s1 * f.s1);
@@ -180,8 +186,8 @@ int sign_changes(const TrigPolynomial& f, std::span<CirclePoint, 4> roots) {
         }
         const CirclePoint toward{f.c1 / n, f.s1 / n};
         const CirclePoint off{-f.c0 / n, std::sqrt((n - f.c0) * (n + f.c0)) / n};
-        roots[count++] = toward * off;
-        roots[count++] = toward * conjugate(off);
+        roots[count++] = {toward * conjugate(off), true};
+        roots[count++] = {toward * off, false};
         return count;
     }
     TrigPolynomial turned = f;

@@ -299,10 +299,10 @@ class Aim {
             }
         };
         for (const TrigPolynomial& f : {meets, outside, ov, meets.derivative()}) {
-            std::array<CirclePoint, 4> roots;
+            std::array<SignChange, 4> roots;
             const int count = sign_changes(f, roots);
             for (int i = 0; i < count; ++i) {
-                consider(radians_of(roots[i]));
+                consider(radians_of(roots[i].at));
             }
         }
         consider(shape_.hinge.lo_rad);

@@ -62,7 +62,7 @@ void add_swing(const ConeTable& cone, First d_p, First d_r, First d_z, SwivelCon
     f.c0 += 2;
     out.add(f * scale);
     // The quadric also touches zero where the bone points straight back.
-    out.add(round);
+    out.guards[out.guard_count++] = round;
 }
 
 void add_cone(const ConeTable& cone, Quat q0, Quat q1, SwivelConstraints& out) {
@@ -172,35 +172,49 @@ bool SwivelConstraints::allow(CirclePoint swivel) const {
             return false;
         }
     }
+    for (int i = 0; i < guard_count; ++i) {
+        if (guards[i].at(swivel) < -kRound) {
+            return false;
+        }
+    }
     return true;
 }
 
 namespace {
 
-struct Critical {
+// A change of sign of one of the polynomials, by the order of its angle in [0, 4).
+struct Event {
     double order;
-    CirclePoint at;
+    SignChange change;
 };
-struct Criticals {
-    std::array<Critical, 40> all;
+struct Events {
+    static constexpr int kMost = 16;
+    std::array<Event, kMost> all;
     int count = 0;
-    void add(CirclePoint p) { all[count++] = {circle_order(p), p}; }
-    void add_roots(const TrigPolynomial& f) {
-        std::array<CirclePoint, 4> roots;
+    int negative_at_0 = 0;  // how many polynomials are
+    bool never = false;     // one is negative everywhere
+
+    // A polynomial that never changes its sign adds nothing.
+    void add(const TrigPolynomial& f) {
+        std::array<SignChange, 4> roots;
         const int n = sign_changes(f, roots);
+        // Before the angle 0 comes, round the circle, the root with the greatest angle.
+        double last_order = -1;
+        bool positive = true;
         for (int i = 0; i < n; ++i) {
-            add(roots[i]);
-        }
-    }
-    void sort() {
-        for (int i = 1; i < count; ++i) {
-            const Critical c = all[i];
-            int k = i;
-            for (; k > 0 && c.order < all[k - 1].order; --k) {
+            const double order = circle_order(roots[i].at);
+            if (order >= last_order) {
+                last_order = order;
+                positive = roots[i].rising;
+            }
+            int k = count++;
+            for (; k > 0 && order < all[k - 1].order; --k) {
                 all[k] = all[k - 1];
             }
-            all[k] = c;
+            all[k] = {order, roots[i]};
         }
+        negative_at_0 += !positive;
+        never = never || (n == 0 && f.at({}) < 0);
     }
 };
 
@@ -210,57 +224,66 @@ void append_arcs(const SwivelConstraints& limits, int family, SwivelIntervals& o
     if (limits.never) {
         return;
     }
-    Criticals c;
+    Events events;
     for (int i = 0; i < limits.count; ++i) {
-        c.add_roots(limits.f[i]);
+        events.add(limits.f[i]);
+        if (events.never) {
+            return;
+        }
     }
     const auto append = [&](const Arc& arc) {
         if (out.count < SwivelIntervals::kMost) {
             out.intervals[out.count++] = {family, arc};
         }
     };
-    if (c.count == 0) {
-        if (limits.allow({})) {
-            append({.full = true});
-        }
-        return;
-    }
-    c.sort();
-    // Between two critical angles all is allowed or nothing.
-    std::array<bool, 40> allowed;
-    int allowed_count = 0;
-    for (int i = 0; i < c.count; ++i) {
-        const CirclePoint from = c.all[i].at, to = c.all[i + 1 < c.count ? i + 1 : 0].at;
-        allowed[i] =
-            limits.allow(c.count == 1 ? CirclePoint{-from.cos, -from.sin} : middle({from, to}));
-        allowed_count += allowed[i];
-    }
-    if (allowed_count == c.count) {
+    if (events.count == 0) {
         append({.full = true});
         return;
     }
-    for (int i = 0; i < c.count; ++i) {
-        if (!allowed[i] || allowed[i > 0 ? i - 1 : c.count - 1]) {
-            continue;  // not the beginning of an arc
+    // Once round the circle: inside where no polynomial is negative. An arc that is open at the end
+    // began before the angle 0.
+    int negative = events.negative_at_0;
+    const Event* from = nullptr;
+    const Event* to_of_first = nullptr;
+    const bool begins_inside = negative <= 0;
+    bool inside = begins_inside;
+    for (int i = 0; i < events.count; ++i) {
+        const Event& event = events.all[i];
+        negative += event.change.rising ? -1 : 1;
+        const bool now = negative <= 0;
+        if (now && !inside) {
+            from = &event;
+        } else if (!now && inside) {
+            if (from != nullptr) {
+                // Ends that are one to double precision must not, by rounding, pass each other.
+                const bool point = event.order - from->order < 1e-14;
+                append({from->change.at, point ? from->change.at : event.change.at});
+            } else {
+                to_of_first = &event;
+            }
         }
-        int last = i;
-        for (int k = 0; k < c.count && allowed[(last + 1) % c.count]; ++k) {
-            last = (last + 1) % c.count;
+        inside = now;
+    }
+    if (begins_inside) {
+        if (to_of_first == nullptr) {
+            append({.full = true});
+        } else if (from != nullptr && inside) {
+            append({from->change.at, to_of_first->change.at});
         }
-        append({c.all[i].at, c.all[(last + 1) % c.count].at});
     }
 }
 
 void append_touching(const SwivelConstraints& limits, int family, SwivelIntervals& out) {
-    Criticals c;
     for (int i = 0; i < limits.count; ++i) {
-        c.add_roots(limits.f[i]);
-        c.add_roots(limits.f[i].derivative());
-    }
-    c.sort();
-    for (int i = 0; i < c.count; ++i) {
-        if (limits.allow(c.all[i].at) && out.count < SwivelIntervals::kMost) {
-            out.intervals[out.count++] = {family, {c.all[i].at, c.all[i].at}};
+        for (const TrigPolynomial& f : {limits.f[i], limits.f[i].derivative()}) {
+            std::array<SignChange, 4> roots;
+            const int n = sign_changes(f, roots);
+            for (int k = 0; k < n; ++k) {
+                const CirclePoint at = roots[k].at;
+                if (limits.allow(at) && out.count < SwivelIntervals::kMost) {
+                    out.intervals[out.count++] = {family, {at, at}};
+                }
+            }
         }
     }
 }

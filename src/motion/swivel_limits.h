@@ -17,8 +17,11 @@ Quat follow_direction(const figure::JointLimit& limit, Vec3 axis_end, Vec3 direc
 
 // Inside the limits where none of them is negative.
 struct SwivelConstraints {
-    std::array<TrigPolynomial, 8> f;
+    std::array<TrigPolynomial, 4> f;
     int count = 0;
+    // Implied by the others but for single points, which only `allow` could mistake.
+    std::array<TrigPolynomial, 2> guards;
+    int guard_count = 0;
     bool never = false;  // one is negative everywhere
 
     void add(const TrigPolynomial& g);

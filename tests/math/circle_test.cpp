@@ -68,14 +68,15 @@ TEST_CASE(
             f.c0 *= 0.1;  // often four roots
             f.c1 *= 0.1;
         }
-        std::array<CirclePoint, 4> roots;
+        std::array<SignChange, 4> roots;
         const int count = sign_changes(f, roots);
         most = std::max(most, count);
         std::vector<double> at;
         for (int k = 0; k < count; ++k) {
-            CHECK(std::fabs(f.at(roots[k])) < 1e-14);
-            CHECK(std::fabs(roots[k].cos * roots[k].cos + roots[k].sin * roots[k].sin - 1) < 1e-15);
-            at.push_back(radians_of(roots[k]));
+            CHECK(std::fabs(f.at(roots[k].at)) < 1e-14);
+            CHECK(std::fabs(dot(roots[k].at, roots[k].at) - 1) < 1e-15);
+            at.push_back(radians_of(roots[k].at));
+            CHECK((f.derivative().at(roots[k].at) > 0) == roots[k].rising);
         }
         std::sort(at.begin(), at.end());
         int seen = 0;
@@ -99,7 +100,7 @@ TEST_CASE(
 }
 
 TEST_CASE("roots that are nearly one, and roots on the borders of the quarters, are found [unit]") {
-    std::array<CirclePoint, 4> roots;
+    std::array<SignChange, 4> roots;
     for (int quarter = 0; quarter < 8; ++quarter) {
         const double a = quarter * kPi / 4;
         for (const double gap : {1e-2, 1e-4, 1e-6}) {
@@ -107,14 +108,14 @@ TEST_CASE("roots that are nearly one, and roots on the borders of the quarters, 
             const TrigPolynomial pair{-std::cos(gap), std::cos(a), std::sin(a), 0, 0};
             const TrigPolynomial squared = square(TrigPolynomial{0, 1, 0, 0, 0});
             CHECK(sign_changes(pair, roots) == 2);
-            CHECK(std::fabs(std::fabs(turn_between(a, radians_of(roots[0]))) - gap) <
+            CHECK(std::fabs(std::fabs(turn_between(a, radians_of(roots[0].at))) - gap) <
                   1e-9 / gap * 1e-6);
             // cos^2 (x - a) - cos^2 gap: four roots, two close ones each side.
             TrigPolynomial four{0.5 - std::cos(gap) * std::cos(gap), 0, 0, 0.5 * std::cos(2 * a),
                                 0.5 * std::sin(2 * a)};
             CHECK(sign_changes(four, roots) == 4);
             for (int k = 0; k < 4; ++k) {
-                CHECK(std::fabs(four.at(roots[k])) < 1e-15);
+                CHECK(std::fabs(four.at(roots[k].at)) < 1e-15);
             }
             CHECK(squared.at(circle_point(0.3)) == doctest::Approx(std::cos(0.3) * std::cos(0.3)));
         }
