@@ -98,16 +98,20 @@ PlainGraph build_graph(const PlainNet& net, std::span<const Predicate> atoms,
     if (!fits) {
         search.end(Ended::kMemory);
     }
-    // A search that was ended is not gone through again: its states are there, cut.
+    // A search that was ended is not gone through again: its states are there, cut. But for one
+    // that was to find so many states only: what they lead to is known.
     const Ended ended = search.ended;
-    if (fits && !search.stop) {
+    const bool again = fits && (ended == Ended::kDone || search.ended_by_count);
+    search.counts_states = false;
+    search.stop = !again;
+    if (again) {
         graph.edges.items.reserve(search.own.edges);
     }
     graph.edges.starts.reserve(states + 1);
     graph.flags.assign(states, 0);
     graph.atoms.atoms = static_cast<std::uint32_t>(atoms.size());
     graph.atoms.may.assign(states * row, 0);
-    const std::uint32_t expanded = ended == Ended::kDone ? search.own.head : 0;
+    const std::uint32_t expanded = again ? search.own.head : 0;
     switch (search.form.packing.words) {
         case 1:
             fill<1>(search, compiled, expanded, graph);
@@ -126,6 +130,8 @@ PlainGraph build_graph(const PlainNet& net, std::span<const Predicate> atoms,
 Marking PlainGraph::marking(std::uint32_t state) const {
     return marking_of(states->form, state, states->net.place_count());
 }
+
+std::uint64_t PlainGraph::bytes() const { return states->form.store->bytes(); }
 
 std::vector<std::uint32_t> PlainGraph::firings_to(std::uint32_t state) const {
     return proof::firings_to(states->net, states->form, state);

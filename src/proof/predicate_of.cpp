@@ -379,6 +379,18 @@ std::optional<Predicate> predicate_of(const net::Net& net, const net::Formula& f
     return Converter(net, formula).run();
 }
 
+std::optional<Predicate> final_markings(const net::Net& net) {
+    std::vector<Predicate> any;
+    for (const net::NetTables::FinalMarking& f : net.tables().finals) {
+        std::optional<Predicate> p = predicate_of(net, f.condition);
+        if (!p) {
+            return std::nullopt;
+        }
+        any.push_back(std::move(*p));
+    }
+    return Predicate::any_of(any);
+}
+
 std::optional<LinearSum> linear_sum_of(const net::Net& net, const Expr& expression) {
     const std::optional<Affine> value = affine_of(net.tables(), expression).back();
     if (!value.has_value() || value->constant != 0) {

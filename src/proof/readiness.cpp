@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "plain_readiness.h"
 #include "puppetri/net/tables.h"
 #include "timed_builder.h"
 
@@ -195,6 +196,9 @@ class ReadinessBuilder final : public TimedBuilder {
 }  // namespace
 
 TimedGraph readiness_graph(const GraphRequest& request) {
+    if (std::optional<TimedGraph> plain = plain_readiness(request)) {
+        return std::move(*plain);
+    }
     ReadinessBuilder builder(request);
     return builder.make();
 }

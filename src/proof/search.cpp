@@ -122,8 +122,10 @@ void Search::look(std::uint64_t more_states, std::uint64_t more_edges) {
     if (!lock.owns_lock()) {
         return;
     }
-    const Ended why = meter.look(states, edges, 0, bytes_now_.load(std::memory_order_relaxed));
+    const Ended why = meter.look(counts_states ? states : 0, edges, 0,
+                                 bytes_now_.load(std::memory_order_relaxed));
     if (why != Ended::kDone) {
+        ended_by_count = why == Ended::kStates;
         end(why);
     }
 }

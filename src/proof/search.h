@@ -74,6 +74,8 @@ class Search {
     std::atomic<Ended> ended{Ended::kDone};
     std::atomic<bool> stop{false};
     void end(Ended why);
+    bool counts_states = true;    // against the budget
+    bool ended_by_count = false;  // so many states were allowed, and the table is whole
     // Looks at the budget, every few batches of a worker.
     void look(std::uint64_t more_states, std::uint64_t more_edges);
     std::uint64_t bytes() const;

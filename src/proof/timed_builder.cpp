@@ -13,6 +13,13 @@ using namespace net;
 
 State TimedGraph::States::decode(std::uint32_t state, std::uint32_t* outside,
                                  std::size_t* length) const {
+    if (plain) {
+        State s;
+        for (const std::uint32_t count : plain->marking(state)) {
+            s.counts.push_back({count, count});
+        }
+        return s;
+    }
     const std::span<const std::uint8_t> bytes = store[state];
     std::size_t at = 0;
     State s = codec.decode(bytes, &at);

@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "atom_reader.h"
 #include "byte_store.h"
 #include "driver.h"
+#include "puppetri/proof/explorer.h"
 #include "puppetri/proof/graph_algorithms.h"
 #include "puppetri/proof/timed_graph.h"
 #include "state_codec.h"
@@ -25,7 +27,8 @@ struct TimedGraph::States {
     ClockForm form;
     StateCodec codec;
     ByteStore store;
-    bool several_starts = false;  // state 0 is before all choices of the start
+    bool several_starts = false;      // state 0 is before all choices of the start
+    std::optional<PlainGraph> plain;  // nets without time: the states are its markings
 
     net::State decode(std::uint32_t state, std::uint32_t* outside = nullptr,
                       std::size_t* length = nullptr) const;

@@ -26,7 +26,9 @@ Value TimedGraph::datum(std::uint32_t state, DatumIndex datum) const {
     return states->decode(state).data[datum.value];
 }
 
-std::uint64_t TimedGraph::bytes() const { return states == nullptr ? 0 : states->store.held(); }
+std::uint64_t TimedGraph::bytes() const {
+    return states == nullptr ? 0 : states->plain ? states->plain->bytes() : states->store.held();
+}
 
 std::string time_in_words(std::int64_t ticks) {
     return ticks == SimTime::never().ticks ? "for ever"
@@ -207,6 +209,13 @@ std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path,
     };
     if (states->form == ClockForm::kClasses) {
         return class_script(*this, path, trouble);
+    }
+    if (states->plain) {
+        std::vector<std::uint32_t> firings;
+        for (const std::uint32_t e : path) {
+            firings.push_back(graph.edges.items[e].label);
+        }
+        return script_of(*states->world.net, firings, states->world.beat, trouble);
     }
     if (states->form == ClockForm::kReadiness) {
         return none("a readiness graph knows no times");

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "contest_session.h"
+#include "plain_session.h"
 #include "puppetri/net/draft.h"
 
 namespace puppetri::verdict {
@@ -50,7 +50,7 @@ std::optional<proof::LinearSum> bound_of(const net::Net& net, const Expr& bound)
 
 class Answering {
  public:
-    Answering(ContestSession& session, std::span<const ContestQuery> queries, AnswerSink sink)
+    Answering(PlainSession& session, std::span<const ContestQuery> queries, AnswerSink sink)
         : session_(session), queries_(queries), sink_(sink), answers_(queries.size()) {
         for (std::size_t i = 0; i < queries.size(); ++i) {
             answers_[i].id = queries[i].id;
@@ -80,10 +80,10 @@ class Answering {
             sink_.take(sink_.context, answers_[i]);
         }
     }
-    void settle(std::size_t i, Truth truth, const char* techniques) {
+    void settle(std::size_t i, Truth truth, How how) {
         if (truth != Truth::kUnknown) {
             answers_[i].value = truth == Truth::kTrue ? "TRUE" : "FALSE";
-            answers_[i].techniques = techniques;
+            answers_[i].techniques = techniques_of(how);
         }
         tell(i);
     }
@@ -117,7 +117,7 @@ class Answering {
         for (std::size_t k = 0; k < goals.size(); ++k) {
             const auto [i, exists] = meaning[k];
             settle(i, exists ? reached[k].truth : proof::opposite(reached[k].truth),
-                   reached[k].techniques);
+                   reached[k].how);
         }
     }
 
@@ -143,7 +143,7 @@ class Answering {
         for (std::size_t k = 0; k < sums.size(); ++k) {
             if (maxima[k].value.has_value()) {
                 answers_[of[k]].value = std::to_string(*maxima[k].value);
-                answers_[of[k]].techniques = maxima[k].techniques;
+                answers_[of[k]].techniques = techniques_of(maxima[k].how);
             }
             tell(of[k]);
         }
@@ -182,7 +182,7 @@ class Answering {
         const std::vector<Decision> decisions = decide_logic(session_, questions);
         for (std::size_t k = 0; k < of.size(); ++k) {
             const Truth truth = decisions[k].truth;
-            settle(of[k], exists(of[k]) ? proof::opposite(truth) : truth, decisions[k].techniques);
+            settle(of[k], exists(of[k]) ? proof::opposite(truth) : truth, decisions[k].how);
         }
     }
 
@@ -190,7 +190,7 @@ class Answering {
         return queries_[i].kind == QueryKind::kLtl && queries_[i].exists;
     }
 
-    ContestSession& session_;
+    PlainSession& session_;
     std::span<const ContestQuery> queries_;
     AnswerSink sink_;
     std::vector<ContestAnswer> answers_;
@@ -233,7 +233,7 @@ std::string contest_line(const ContestAnswer& answer) {
 std::vector<ContestAnswer> answer_queries(const net::Net& net,
                                           std::span<const ContestQuery> queries,
                                           const proof::Budget& budget, AnswerSink sink) {
-    ContestSession session(net, budget);
+    PlainSession session(net, budget);
     return Answering(session, queries, sink).run();
 }
 

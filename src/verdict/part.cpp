@@ -111,6 +111,22 @@ GraphView Part::view(Method method) const {
     return v;
 }
 
+std::vector<std::uint32_t> Part::in_whole(std::vector<std::uint32_t> firings) const {
+    if (transitions.empty()) {
+        return firings;
+    }
+    std::vector<std::uint32_t> whole(net_->transition_count());
+    for (std::uint32_t t = 0; t < transitions.size(); ++t) {
+        if (transitions[t] < whole.size()) {
+            whole[transitions[t]] = t;
+        }
+    }
+    for (std::uint32_t& t : firings) {
+        t = whole[t];
+    }
+    return firings;
+}
+
 void Part::forget(Method method) { graphs_[static_cast<std::size_t>(method)].reset(); }
 
 }  // namespace puppetri::verdict

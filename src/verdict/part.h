@@ -41,6 +41,9 @@ class Part {
     GraphView view(Method method) const;
     bool has(Method method) const { return graphs_[static_cast<std::size_t>(method)].has_value(); }
     void forget(Method method);
+    // The graph is not only a first look at few states.
+    bool& all_states(Method method) { return all_states_[static_cast<std::size_t>(method)]; }
+    const HostLowering* host() const { return host_; }
 
     // Found on the way: without time this place grows without end.
     bool grows = false;
@@ -48,6 +51,8 @@ class Part {
 
     // From the numbers of the whole net to those of the part; empty: the same.
     std::vector<std::uint32_t> transitions, events;
+    // Firings of the part as firings of the whole net.
+    std::vector<std::uint32_t> in_whole(std::vector<std::uint32_t> firings) const;
 
  private:
     Part() = default;
@@ -61,6 +66,7 @@ class Part {
     std::vector<Obligation> obligations_;
     std::optional<proof::TimedGraph> graphs_[3];
     std::string why_[3];
+    bool all_states_[3] = {false, false, false};
 };
 
 }  // namespace puppetri::verdict

@@ -14,6 +14,7 @@
 #include "builtin_rules.h"
 #include "by_structure.h"
 #include "part.h"
+#include "plain_witness.h"
 #include "puppetri/net/tables.h"
 #include "puppetri/proof/coverability.h"
 #include "puppetri/verdict/sample.h"
@@ -236,6 +237,12 @@ class Prover {
                 own.rule.transitions.clear();
                 numbers[k] = part->add(std::move(own));
             }
+            // What is too large for a graph is decided on the markings of the whole.
+            std::string why;
+            if (net_.paced() && few_of(*part, Method::kReadiness, why) != nullptr &&
+                part->view(Method::kReadiness).timed->graph.ended == proof::Ended::kStates) {
+                return false;
+            }
             for (std::size_t k = 0; k < group.size(); ++k) {
                 const Work& w = works_[group[k]];
                 const std::uint32_t number = numbers[k];
@@ -249,8 +256,9 @@ class Prover {
                 good[k] &= holds || of_one(w.asked) ? 1 : 0;
                 sums[k].states += v.states;
                 sums[k].edges += v.edges;
-                if (f && f->force != Force::kPlain) {
-                    sums[k].force = f->force;
+                if (f && (f->force == Force::kProbabilityOne ||
+                          sums[k].force != Force::kProbabilityOne)) {
+                    sums[k].force = f->force;  // the weakest of all
                 }
             }
         }
@@ -318,6 +326,7 @@ class Prover {
             open.push_back(i);
             numbers.push_back(part.add(std::move(own)));
         }
+        by_markings(part, open, numbers);
         for (const Method method : {Method::kReadiness, Method::kExact, Method::kClasses}) {
             for (std::size_t k = 0; k < open.size(); ++k) {
                 Work& w = works_[open[k]];
@@ -341,6 +350,70 @@ class Prover {
                 finish(works_[i]);
             }
         }
+    }
+
+    // ---- markings ----
+
+    // Where the graph is large, what markings alone decide comes before it.
+    void by_markings(Part& part, const std::vector<std::uint32_t>& open,
+                     const std::vector<std::uint32_t>& numbers) {
+        std::string why;
+        const proof::TimedGraph* few = few_of(part, Method::kReadiness, why);
+        if (few == nullptr || cancelled() ||
+            (few->graph.ended == proof::Ended::kDone &&
+             few->graph.size() <= options_.first_look_states)) {
+            return;
+        }
+        // Of a net with times it sees too much to spend much on it.
+        PlainRules rules(part.net(), part.host(), budget(part.net().paced() ? 0.6 : 0.15));
+        if (!rules.available()) {
+            return;
+        }
+        for (std::size_t k = 0; k < open.size(); ++k) {
+            Work& w = works_[open[k]];
+            if (w.asked.question != Question::kRule || left() <= 0 || cancelled()) {
+                continue;
+            }
+            const double begin = now_s();
+            settle(part, numbers[k], rules.decide(part.asked(numbers[k]).rule), w);
+            w.seconds += now_s() - begin;
+            if (w.verdict.answer != Answer::kUnknown) {
+                finish(w);
+            }
+        }
+    }
+
+    void settle(const Part& part, std::uint32_t number, PlainFinding f, Work& w) {
+        if (f.answer == Answer::kUnknown) {
+            return;
+        }
+        const bool possible = part.asked(number).rule.kind == net::RuleKind::kPossible;
+        const bool impossible =
+            f.answer == Answer::kRefuted &&
+            (possible || part.asked(number).rule.kind == net::RuleKind::kQuasiLive);
+        const bool needs_run = f.answer == Answer::kRefuted ? !impossible : possible;
+        if (needs_run) {
+            std::string trouble = "none was found within the budget";
+            std::optional<Witness> witness;
+            if (f.run) {
+                const Watched watch = watched(w.asked);
+                witness = witness_of_firings(theatre_, watch.obligation, *watch.reader, f,
+                                             part.in_whole(*f.run), trouble);
+            }
+            if (!witness && f.answer == Answer::kRefuted && !f.branches) {
+                w.verdict.reason = f.reason + ", but no run shows it: " + trouble;
+                return;
+            }
+            if (!witness && f.branches) {
+                w.verdict.notes.push_back("no single run shows it: it is about choices");
+            }
+            w.verdict.witness = std::move(witness);
+        }
+        w.verdict.answer = f.answer;
+        w.verdict.force = f.force;
+        w.verdict.method = method_of(f.how);
+        w.verdict.reason = f.answer == Answer::kRefuted ? f.reason : "";
+        w.verdict.notes.insert(w.verdict.notes.end(), f.notes.begin(), f.notes.end());
     }
 
     void by_sampling(Work& w) {
@@ -378,18 +451,21 @@ class Prover {
         }
         return true;
     }
-    // What grows without end even without time will hardly end with it: not all is spent on it.
-    const proof::TimedGraph* graph_of(Part& part, Method method, std::string& why) {
+    // A first look, at few states, where a graph may be large.
+    const proof::TimedGraph* few_of(Part& part, Method method, std::string& why) {
         constexpr std::uint64_t kFew = 20'000;
         proof::Budget b = budget(method == Method::kReadiness ? 0.4 : 0.6);
-        const std::uint64_t states = b.states;
         if (method == Method::kReadiness || part.grows) {
-            b.states = std::min(b.states, kFew);
+            const bool counts = part.net().paced() && part.net().declarations().data.empty();
+            b.states = std::min(b.states, counts ? options_.first_look_states : kFew);
         }
-        const bool known = part.has(method);
-        const proof::TimedGraph* graph = part.graph(method, b, options_.outside_events, why);
-        if (graph == nullptr || known || graph->graph.ended == proof::Ended::kDone || part.grows ||
-            b.states == states) {
+        return part.graph(method, b, options_.outside_events, why);
+    }
+    // What grows without end even without time will hardly end with it: not all is spent on it.
+    const proof::TimedGraph* graph_of(Part& part, Method method, std::string& why) {
+        const proof::TimedGraph* graph = few_of(part, method, why);
+        if (graph == nullptr || graph->graph.ended != proof::Ended::kStates || part.grows ||
+            part.all_states(method)) {
             return graph;
         }
         proof::Budget little = budget(0.1);
@@ -403,8 +479,9 @@ class Prover {
             return graph;
         }
         part.forget(method);
-        b.states = states;
-        return part.graph(method, b, options_.outside_events, why);
+        part.all_states(method) = true;
+        return part.graph(method, budget(method == Method::kReadiness ? 0.4 : 0.6),
+                          options_.outside_events, why);
     }
 
     // The finding of one method, and what it cost.

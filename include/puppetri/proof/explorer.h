@@ -81,13 +81,15 @@ struct PlainGraph {
     Marking marking(std::uint32_t state) const;
     // A shortest firing sequence from the initial marking.
     std::vector<std::uint32_t> firings_to(std::uint32_t state) const;
+    std::uint64_t bytes() const;  // held by the states, apart from `graph`
 
     std::shared_ptr<const PlainStates> states;
 };
 
 // Explores twice on one thread, first to count, then to fill.
 // Gives  where the budget ends while exploring: a graph with ended != kDone whose states are those
-//        that were found, all of them kCut.
+//        that were found, kCut where they were not expanded: all of them, unless it was the number
+//        of states that ended it.
 // Cost   8 bytes per edge, about 25 per state, and 1/4 byte per state and atom.
 PlainGraph build_graph(const PlainNet& net, std::span<const Predicate> atoms,
                        const Predicate* final, const Budget& budget);

@@ -134,6 +134,8 @@ class CompiledPredicate {
 //        counts in a way that is not linear; or of the fireability of a transition that is more
 //        than its arcs: with a guard, delay or event, timed places, or beside other priorities.
 std::optional<Predicate> predicate_of(const net::Net& net, const net::Formula& formula);
+// Where the net may end; nothing if a declared end speaks of more than counts.
+std::optional<Predicate> final_markings(const net::Net& net);
 // An int expression without a constant part.
 std::optional<LinearSum> linear_sum_of(const net::Net& net, const Expr& expression);
 

@@ -136,4 +136,9 @@ class TimedGraph {
     std::unique_ptr<States> states;  // the maker's business
 };
 
+// A firing sequence of a net without any time (paced) as a script that has been played.
+// Gives  nothing if the net does not fire so; trouble says where.
+std::optional<Script> script_of(const net::Net& net, std::span<const std::uint32_t> firings,
+                                std::int64_t beat, std::string* trouble = nullptr);
+
 }  // namespace puppetri::proof

@@ -24,6 +24,9 @@ struct ProveOptions {
     bool built_in = true;
     // Runs to sample where nothing else answers; 0: none (sample.h).
     std::uint64_t samples = 0;
+    // Graphs of up to so many markings are looked at edge by edge; of larger ones of nets without
+    // time, markings alone decide what they can (structure, walks, reductions, decision diagrams).
+    std::uint32_t first_look_states = 100'000;
     // Called with each verdict as soon as it is known.
     void (*tell)(void* context, const Verdict& verdict) = nullptr;
     void* context = nullptr;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "contest_session.h"
+#include "plain_session.h"
 #include "puppetri/proof/explorer.h"
 #include "puppetri/proof/random_walk.h"
 #include "puppetri/proof/reductions.h"
@@ -17,15 +17,6 @@ namespace {
 using proof::Ended;
 using proof::Predicate;
 using proof::Truth;
-
-constexpr const char* kByStructure = "TOPOLOGICAL";
-constexpr const char* kByWalk = "RANDOM_WALK EXPLICIT";
-constexpr const char* kByEquation = "STATE_EQUATION TOPOLOGICAL";
-constexpr const char* kByExploration = "EXPLICIT STATE_COMPRESSION";
-constexpr const char* kByDiagrams = "DECISION_DIAGRAMS";
-constexpr const char* kByReduction = "EXPLICIT STRUCTURAL_REDUCTION STATE_COMPRESSION";
-constexpr const char* kByStubbornSets =
-    "EXPLICIT STRUCTURAL_REDUCTION STUBBORN_SETS STATE_COMPRESSION";
 
 // Goals that are not decided yet.
 class OpenGoals {
@@ -48,14 +39,14 @@ class OpenGoals {
     std::uint32_t count() const { return static_cast<std::uint32_t>(open_.size()); }
     // decide(i) gives what is known now of the i-th open goal.
     template <class Decide>
-    void decide(const char* techniques, Decide&& decide) {
+    void decide(How how, Decide&& decide) {
         std::vector<std::uint32_t> left;
         for (std::uint32_t i = 0; i < open_.size(); ++i) {
             const Truth truth = decide(i);
             if (truth == Truth::kUnknown) {
                 left.push_back(open_[i]);
             } else {
-                decisions_[open_[i]] = {truth, techniques};
+                decisions_[open_[i]] = {truth, how};
             }
         }
         open_ = std::move(left);
@@ -68,39 +59,52 @@ class OpenGoals {
     std::vector<std::uint32_t> open_;
 };
 
-void explore_for(ContestSession& session, OpenGoals& open, const proof::Budget& budget) {
+void explore_for(PlainSession& session, OpenGoals& open, const proof::Budget& budget) {
     const std::vector<Predicate> goals = open.list();
     proof::ExploreOptions options;
     options.goals = goals;
     options.stop_when_found = true;
     const proof::Exploration e = proof::explore(session.plain(), options, budget);
     const bool all_seen = e.ended == Ended::kDone && e.complete;
-    open.decide(kByExploration, [&](std::uint32_t i) {
+    open.decide(How::kExploration, [&](std::uint32_t i) {
         return e.goals[i].found ? Truth::kTrue : all_seen ? Truth::kFalse : Truth::kUnknown;
     });
 }
 
-void ask_diagrams(proof::SymbolicSpace* space, OpenGoals& open, const ContestSession& session) {
+void ask_diagrams(proof::SymbolicSpace* space, OpenGoals& open, const PlainSession& session) {
     if (space == nullptr) {
         return;
     }
     space->renew(session.share(0.6));
-    open.decide(kByDiagrams, [&](std::uint32_t i) {
+    open.decide(How::kDiagrams, [&](std::uint32_t i) {
         const std::optional<bool> none = space->empty(space->satisfying(open[i]));
         return none.has_value() ? proof::truth_of(!*none) : Truth::kUnknown;
     });
 }
 
 // An enabled transition in every marking, by theorem.
-bool never_dead_by_structure(ContestSession& session) {
+bool never_dead_by_structure(PlainSession& session) {
     return proof::structural_liveness(session.plain(), session.share(0.1, 0.2)).deadlock_free;
 }
 
-void decide_without_states(ContestSession& session, OpenGoals& open) {
+// Smaller, with the same answer. Where a final marking is no death, its places would have to be
+// kept: then the net is left as it is.
+proof::Reduction reduced_for_death(PlainSession& session, const Predicate& final) {
+    proof::ReductionGoal goal;
+    goal.preserves = proof::Preserves::kDeadlock;
+    proof::Budget budget = session.share(0.2, 2);
+    if (!final.is_constant(false)) {
+        budget.seconds = 0;
+        goal.keep.assign(session.plain().place_count(), 1);
+    }
+    return proof::reduce(session.plain(), goal, budget);
+}
+
+void decide_without_states(PlainSession& session, OpenGoals& open) {
     for (std::uint32_t i = 0; i < open.count(); ++i) {
         open[i] = proof::simplified(open[i], session.plain(), session.bounds());
     }
-    open.decide(kByStructure, [&](std::uint32_t i) {
+    open.decide(How::kStructure, [&](std::uint32_t i) {
         return open[i].is_constant(true)    ? Truth::kTrue
                : open[i].is_constant(false) ? Truth::kFalse
                                             : Truth::kUnknown;
@@ -111,12 +115,12 @@ void decide_without_states(ContestSession& session, OpenGoals& open) {
         options.goals = list;
         const proof::WalkOutcome walk =
             proof::walk_at_random(session.plain(), options, session.share(0.1, 1));
-        open.decide(kByWalk, [&](std::uint32_t i) {
+        open.decide(How::kWalk, [&](std::uint32_t i) {
             return walk.met[i] != 0 ? Truth::kTrue : Truth::kUnknown;
         });
     }
     const proof::Budget each = session.share(0.05 / std::max(1u, open.count()), 0.3);
-    open.decide(kByEquation, [&](std::uint32_t i) {
+    open.decide(How::kEquation, [&](std::uint32_t i) {
         return proof::solve_state_equation(session.plain(), open[i], each).kind ==
                        proof::StateEquationAnswer::kImpossible
                    ? Truth::kFalse
@@ -126,14 +130,14 @@ void decide_without_states(ContestSession& session, OpenGoals& open) {
 
 }  // namespace
 
-std::vector<Decision> decide_reachable_quickly(ContestSession& session,
+std::vector<Decision> decide_reachable_quickly(PlainSession& session,
                                                std::span<const Predicate> goals) {
     OpenGoals open(goals);
     decide_without_states(session, open);
     return open.take();
 }
 
-std::vector<Decision> decide_reachable(ContestSession& session, std::span<const Predicate> goals) {
+std::vector<Decision> decide_reachable(PlainSession& session, std::span<const Predicate> goals) {
     OpenGoals open(goals);
     decide_without_states(session, open);
     if (!open.empty()) {
@@ -156,22 +160,24 @@ std::vector<Decision> decide_reachable(ContestSession& session, std::span<const 
     return open.take();
 }
 
-Decision decide_dead(ContestSession& session) {
+Decision decide_dead(PlainSession& session, const Predicate& final) {
     if (never_dead_by_structure(session)) {
-        return {Truth::kFalse, kByStructure};
+        return {Truth::kFalse, How::kStructure};
     }
-    proof::WalkOptions walk;
-    walk.steps = 20'000;
-    walk.find_dead = true;
-    if (proof::walk_at_random(session.plain(), walk, session.share(0.1, 0.2)).met_dead) {
-        return {Truth::kTrue, kByWalk};
+    const bool everywhere = final.is_constant(false);
+    if (everywhere) {
+        proof::WalkOptions walk;
+        walk.steps = 20'000;
+        walk.find_dead = true;
+        if (proof::walk_at_random(session.plain(), walk, session.share(0.1, 0.2)).met_dead) {
+            return {Truth::kTrue, How::kWalk};
+        }
     }
-    proof::ReductionGoal goal;
-    goal.preserves = proof::Preserves::kDeadlock;
-    const proof::Reduction reduced = proof::reduce(session.plain(), goal, session.share(0.2, 2));
+    const proof::Reduction reduced = reduced_for_death(session, final);
     const auto explored = [&](const proof::Budget& budget, bool stubborn) {
         proof::ExploreOptions options;
         options.find_dead = true;
+        options.final = everywhere ? nullptr : &final;
         options.stop_when_found = true;
         options.reduce = stubborn;
         const proof::Exploration e = proof::explore(reduced.net, options, budget);
@@ -184,27 +190,72 @@ Decision decide_dead(ContestSession& session) {
     few.states = 3'000'000;
     Truth truth = explored(few, false);
     if (truth != Truth::kUnknown) {
-        return {truth, kByReduction};
+        return {truth, How::kReduced};
     }
     truth = explored(session.share(0.4), true);
     if (truth != Truth::kUnknown) {
-        return {truth, kByStubbornSets};
+        return {truth, How::kStubborn};
     }
     if (proof::SymbolicSpace* space = session.symbolic(0.5)) {
         space->renew(session.share(0.8));
-        const std::optional<bool> none = space->empty(space->stuck());
+        const std::optional<bool> none =
+            space->empty(space->without(space->stuck(), space->satisfying(final)));
         if (none.has_value()) {
-            return {proof::truth_of(!*none), kByDiagrams};
+            return {proof::truth_of(!*none), How::kDiagrams};
         }
     }
     if (!session.out_of_time()) {
         truth = explored(session.share(1), true);
     }
-    return {truth, kByStubbornSets};
+    return {truth, How::kStubborn};
 }
 
-std::vector<Maximum> decide_maxima(ContestSession& session,
-                                   std::span<const proof::LinearSum> sums) {
+Firings way_to(PlainSession& session, const Predicate& goal) {
+    const auto explored = [&](const proof::Budget& budget) -> Firings {
+        proof::ExploreOptions options;
+        options.goals = {&goal, 1};
+        options.stop_when_found = true;
+        options.witnesses = true;
+        proof::Exploration e = proof::explore(session.plain(), options, budget);
+        return e.goals[0].found ? Firings(std::move(e.goals[0].firings)) : std::nullopt;
+    };
+    const auto drawn = [&](proof::SymbolicSpace* space) -> Firings {
+        if (space == nullptr) {
+            return std::nullopt;
+        }
+        space->renew(session.share(0.5));
+        return space->path_to(space->satisfying(goal));
+    };
+    proof::Budget few = session.share(0.3);
+    few.states = 300'000;
+    Firings way = explored(few);
+    if (!way) {
+        way = drawn(session.quick_symbolic());
+    }
+    if (!way && !session.too_many_to_visit()) {
+        way = explored(session.share(0.6));
+    }
+    return way ? std::move(way) : drawn(session.symbolic(0.9));
+}
+
+Firings way_to_death(PlainSession& session, const Predicate& final) {
+    const proof::Reduction reduced = reduced_for_death(session, final);
+    proof::ExploreOptions options;
+    options.find_dead = true;
+    options.final = final.is_constant(false) ? nullptr : &final;
+    options.witnesses = true;
+    const proof::Exploration e = proof::seek(reduced.net, options, session.share(0.5));
+    if (e.dead.found) {
+        return reduced.original(session.plain(), e.dead.firings, true);
+    }
+    if (proof::SymbolicSpace* space = session.symbolic(0.5)) {
+        space->renew(session.share(0.8));
+        return space->path_to(space->without(space->stuck(), space->satisfying(final)));
+    }
+    return std::nullopt;
+}
+
+std::vector<Maximum> decide_maxima(PlainSession& session, std::span<const proof::LinearSum> sums) {
     std::vector<Maximum> result(sums.size());
     std::vector<std::optional<std::int64_t>> most(sums.size());
     proof::WalkOptions options;
@@ -213,14 +264,14 @@ std::vector<Maximum> decide_maxima(ContestSession& session,
     const proof::WalkOutcome walk =
         proof::walk_at_random(session.plain(), options, session.share(0.1, 1));
     std::vector<std::int64_t> least = walk.greatest;
-    const auto settle = [&](std::size_t i, const char* techniques) {
+    const auto settle = [&](std::size_t i, How how) {
         if (!result[i].value.has_value() && most[i].has_value() && *most[i] <= least[i]) {
-            result[i] = {least[i], techniques};
+            result[i] = {least[i], how};
         }
     };
     for (std::size_t i = 0; i < sums.size(); ++i) {
         most[i] = proof::upper_bound(session.plain(), sums[i], session.share(0.02, 0.3));
-        settle(i, kByEquation);
+        settle(i, How::kEquation);
     }
     const auto open = [&] {
         return std::any_of(result.begin(), result.end(),
@@ -237,7 +288,7 @@ std::vector<Maximum> decide_maxima(ContestSession& session,
             }
             const std::optional<std::int64_t> value = space->max_of(sums[i], space->all());
             if (value.has_value()) {
-                result[i] = {value, kByDiagrams};
+                result[i] = {value, How::kDiagrams};
             }
         }
     };
@@ -265,13 +316,13 @@ std::vector<Maximum> decide_maxima(ContestSession& session,
         for (std::size_t i = 0; i < sums.size(); ++i) {
             if (!result[i].value.has_value() && sums[i].terms.size() == 1 &&
                 sums[i].terms[0].factor == 1) {
-                result[i] = {std::int64_t{e.bounds[sums[i].terms[0].place]}, kByExploration};
+                result[i] = {std::int64_t{e.bounds[sums[i].terms[0].place]}, How::kExploration};
             }
         }
         for (std::size_t k = 0; k < goals.size(); ++k) {
             const std::size_t i = goal_of[k];
             if (!e.goals[k].found) {
-                result[i] = {least[i], kByExploration};
+                result[i] = {least[i], How::kExploration};
                 continue;
             }
             std::int64_t value = 0;
@@ -279,7 +330,7 @@ std::vector<Maximum> decide_maxima(ContestSession& session,
                 value += term.factor * std::int64_t{e.goals[k].marking[term.place]};
             }
             least[i] = std::max(least[i] + 1, value);
-            settle(i, kByExploration);
+            settle(i, How::kExploration);
         }
     }
     if (open() && !session.out_of_time()) {

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <utility>
 
-#include "contest_session.h"
 #include "parallel.h"
+#include "plain_session.h"
 #include "puppetri/base/require.h"
 #include "puppetri/proof/buechi.h"
 #include "puppetri/proof/ctl.h"
@@ -23,46 +23,7 @@ using proof::Temporal;
 using proof::Truth;
 using Op = Temporal::Op;
 
-constexpr const char* kByGraph = "EXPLICIT STATE_COMPRESSION";
-constexpr const char* kByDiagrams = "DECISION_DIAGRAMS";
-
 bool is_linear(const Temporal& t) { return t.logic == Temporal::Logic::kLtl; }
-
-// EF a, AG a, and G a on all paths, over a state formula: a question about single markings.
-struct AsReachability {
-    Predicate goal;
-    bool value_if_reached = false;
-};
-std::optional<AsReachability> as_reachability(const LogicQuestion& q) {
-    const auto& nodes = q.formula.nodes;
-    bool value = true;
-    auto at = static_cast<std::uint32_t>(nodes.size()) - 1;
-    while (nodes[at].op == Op::kNot) {
-        value = !value;
-        at = nodes[at].a;
-    }
-    // The operand: an atom or its negation.
-    const auto literal = [&](std::uint32_t i) -> std::optional<Predicate> {
-        if (nodes[i].op == Op::kAtom) {
-            return q.atoms[nodes[i].index];
-        }
-        if (nodes[i].op == Op::kNot && nodes[nodes[i].a].op == Op::kAtom) {
-            return q.atoms[nodes[nodes[i].a].index].negated();
-        }
-        return std::nullopt;
-    };
-    if (nodes[at].op == Op::kSomeUntil && nodes[nodes[at].a].op == Op::kTrue) {
-        if (std::optional<Predicate> goal = literal(nodes[at].b)) {
-            return AsReachability{std::move(*goal), value};
-        }
-    }
-    if (value && nodes[at].op == Op::kRelease && nodes[nodes[at].a].op == Op::kFalse) {
-        if (std::optional<Predicate> kept = literal(nodes[at].b)) {
-            return AsReachability{kept->negated(), false};
-        }
-    }
-    return std::nullopt;
-}
 
 // CTL on sets of markings.
 std::optional<bool> branching_by_diagrams(proof::SymbolicSpace& space, const LogicQuestion& q) {
@@ -108,7 +69,9 @@ std::optional<bool> branching_by_diagrams(proof::SymbolicSpace& space, const Log
     return space.holds_initially(sets.back());
 }
 
-std::optional<bool> linear_by_diagrams(proof::SymbolicSpace& space, const LogicQuestion& q) {
+// What violates a formula of linear time.
+std::optional<proof::SymbolicAutomaton> violations(proof::SymbolicSpace& space,
+                                                   const LogicQuestion& q) {
     const std::optional<proof::Buechi> wrong = proof::automaton_of(q.formula, true);
     if (!wrong.has_value()) {
         return std::nullopt;
@@ -136,13 +99,18 @@ std::optional<bool> linear_by_diagrams(proof::SymbolicSpace& space, const LogicQ
             automaton.edges.push_back({from, e.target, std::move(guard), e.accepts});
         }
     }
-    const std::optional<bool> violated = space.accepts(automaton);
+    return automaton;
+}
+
+std::optional<bool> linear_by_diagrams(proof::SymbolicSpace& space, const LogicQuestion& q) {
+    const std::optional<proof::SymbolicAutomaton> wrong = violations(space, q);
+    const std::optional<bool> violated = wrong ? space.accepts(*wrong) : std::nullopt;
     return violated.has_value() ? std::optional(!*violated) : std::nullopt;
 }
 
 class Logic {
  public:
-    Logic(ContestSession& session, std::span<const LogicQuestion> questions)
+    Logic(PlainSession& session, std::span<const LogicQuestion> questions)
         : session_(session), questions_(questions), decisions_(questions.size()) {}
 
     std::vector<Decision> run() {
@@ -153,7 +121,7 @@ class Logic {
             by_diagrams(session_.quick_symbolic(), 0.02, 1);
         }
         if (!open().empty() && !session_.too_many_to_visit()) {
-            by_graph(0.6, ContestSession::kVisited);
+            by_graph(0.6, PlainSession::kVisited);
         }
         if (!open().empty() && !session_.out_of_time()) {
             // Two rounds, so that one hard question does not eat the time of all.
@@ -176,7 +144,7 @@ class Logic {
         return list;
     }
 
-    void by_reachability(std::vector<Decision> (*decide)(ContestSession&,
+    void by_reachability(std::vector<Decision> (*decide)(PlainSession&,
                                                          std::span<const Predicate>)) {
         std::vector<Predicate> goals;
         std::vector<std::pair<std::uint32_t, bool>> meaning;
@@ -242,7 +210,7 @@ class Logic {
                     is_linear(formula)
                         ? proof::check_ltl(graph, formula, atoms_of[i], rest, false).holds
                         : checker.holds(formula, atoms_of[i], rest);
-                decisions_[i] = {truth, kByGraph};
+                decisions_[i] = {truth, How::kExploration};
             }
         });
     }
@@ -259,19 +227,61 @@ class Logic {
                                                   ? linear_by_diagrams(*space, q)
                                                   : branching_by_diagrams(*space, q);
             if (holds.has_value()) {
-                decisions_[i] = {proof::truth_of(*holds), kByDiagrams};
+                decisions_[i] = {proof::truth_of(*holds), How::kDiagrams};
             }
         }
     }
 
-    ContestSession& session_;
+    PlainSession& session_;
     std::span<const LogicQuestion> questions_;
     std::vector<Decision> decisions_;
 };
 
 }  // namespace
 
-std::vector<Decision> decide_logic(ContestSession& session,
+std::optional<AsReachability> as_reachability(const LogicQuestion& q) {
+    const auto& nodes = q.formula.nodes;
+    bool value = true;
+    auto at = static_cast<std::uint32_t>(nodes.size()) - 1;
+    while (nodes[at].op == Op::kNot) {
+        value = !value;
+        at = nodes[at].a;
+    }
+    // The operand: an atom or its negation.
+    const auto literal = [&](std::uint32_t i) -> std::optional<Predicate> {
+        if (nodes[i].op == Op::kAtom) {
+            return q.atoms[nodes[i].index];
+        }
+        if (nodes[i].op == Op::kNot && nodes[nodes[i].a].op == Op::kAtom) {
+            return q.atoms[nodes[nodes[i].a].index].negated();
+        }
+        return std::nullopt;
+    };
+    if (nodes[at].op == Op::kSomeUntil && nodes[nodes[at].a].op == Op::kTrue) {
+        if (std::optional<Predicate> goal = literal(nodes[at].b)) {
+            return AsReachability{std::move(*goal), value};
+        }
+    }
+    if (value && nodes[at].op == Op::kRelease && nodes[nodes[at].a].op == Op::kFalse) {
+        if (std::optional<Predicate> kept = literal(nodes[at].b)) {
+            return AsReachability{kept->negated(), false};
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<proof::SymbolicLasso> run_against(PlainSession& session,
+                                                const LogicQuestion& question) {
+    proof::SymbolicSpace* space = session.symbolic(0.5);
+    if (space == nullptr) {
+        return std::nullopt;
+    }
+    space->renew(session.share(0.8));
+    const std::optional<proof::SymbolicAutomaton> wrong = violations(*space, question);
+    return wrong ? space->lasso(*wrong) : std::nullopt;
+}
+
+std::vector<Decision> decide_logic(PlainSession& session,
                                    std::span<const LogicQuestion> questions) {
     return Logic(session, questions).run();
 }
