@@ -13,6 +13,7 @@ std::vector<Command> all_commands() {
         run_command(),
         prove_command(),
         explain_command(),
+        sweep_command(),
         explore_command(),
         query_command(),
         draw_command(),

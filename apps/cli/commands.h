@@ -17,6 +17,7 @@ Command explain_command();
 Command draw_command();
 Command export_command();
 Command render_command();
+Command sweep_command();
 Command explore_command();
 Command convert_command();
 Command query_command();

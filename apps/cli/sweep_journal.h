@@ -28,14 +28,17 @@ Share share_of_environment();
 // The rows of one point of a sweep.
 class PointJournal final : public sim::Journal {
  public:
-    bool recall(std::uint64_t number, std::span<double> values) override;
+    Known recall(std::uint64_t number, std::span<double> values, Diagnostic& fault) override;
     void keep(std::uint64_t number, std::span<const double> values) override;
+    void keep_failure(std::uint64_t number, const Diagnostic& fault) override;
+    bool wait() override;
 
  private:
     friend class SweepJournal;
     class SweepJournal* owner_ = nullptr;
     std::size_t point_ = 0;
     std::map<std::uint64_t, std::vector<double>> rows_;
+    std::map<std::uint64_t, Diagnostic> failures_;
 };
 
 class SweepJournal {
@@ -52,8 +55,8 @@ class SweepJournal {
     SweepJournal& operator=(const SweepJournal&) = delete;
 
     PointJournal& point(std::size_t i) { return points_[i]; }
-    // Reads what the others have written meanwhile.
-    void refresh();
+    // Reads what the others have written meanwhile. Gives whether there was any.
+    bool refresh();
     // Writing failed, once (a full disk): the sweep goes on, but could not be resumed.
     bool broken() const { return broken_; }
 
@@ -61,6 +64,7 @@ class SweepJournal {
     friend class PointJournal;
     SweepJournal() = default;
     void read(const std::string& path, std::uint64_t& offset);
+    void write(const std::string& line);
 
     std::string folder_;
     std::uint64_t fingerprint_ = 0;
@@ -69,7 +73,7 @@ class SweepJournal {
     std::map<std::string, std::uint64_t> offsets_;  // read so far, by file
     std::FILE* file_ = nullptr;
     std::string own_;
-    bool broken_ = false;
+    bool broken_ = false, together_ = false;
 };
 
 }  // namespace puppetri::cli

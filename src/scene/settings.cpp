@@ -156,28 +156,32 @@ class Setter {
 
 Checked<std::string> with_settings(std::string_view text, std::string_view filename,
                                    std::span<const Setting> settings) {
-    lang::Parsed parsed = lang::parse(text, filename);
-    if (has_errors(parsed.diagnostics)) {
-        return Unexpected(std::move(parsed.diagnostics));
-    }
-    std::vector<Edit> edits;
+    std::string changed(text);
     Diagnostics wrong;
+    // One after another, since two arguments that were not written meet at one place
     for (const Setting& s : settings) {
-        Setter setter(parsed.file, s);
-        if (!setter.find(edits)) {
-            Diagnostic d;
-            d.code = "unknown-setting";
-            d.where.file = std::string(filename);
-            d.element = s.path;
-            d.message = "the scene has nothing of this name that can be set";
-            d.remedy = "can be set: " + setter.could_be();
-            wrong.push_back(std::move(d));
+        lang::Parsed parsed = lang::parse(changed, filename);
+        if (has_errors(parsed.diagnostics)) {
+            return Unexpected(std::move(parsed.diagnostics));
         }
+        std::vector<Edit> edits;
+        Setter setter(parsed.file, s);
+        if (setter.find(edits)) {
+            PUP_TRY(changed, lang::apply(parsed.file, edits));
+            continue;
+        }
+        Diagnostic d;
+        d.code = "unknown-setting";
+        d.where.file = std::string(filename);
+        d.element = s.path;
+        d.message = "the scene has nothing of this name that can be set";
+        d.remedy = "can be set: " + setter.could_be();
+        wrong.push_back(std::move(d));
     }
     if (!wrong.empty()) {
         return Unexpected(std::move(wrong));
     }
-    return lang::apply(parsed.file, edits);
+    return changed;
 }
 
 }  // namespace puppetri::scene

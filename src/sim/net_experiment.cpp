@@ -18,6 +18,11 @@ class NetRunner final : public Runner {
         options.seed = replication.seed;
         options.antithetic = replication.antithetic;
         options.beat = options_.beat;
+        std::unique_ptr<net::MovementHost> host;
+        if (options_.host != nullptr) {
+            host = options_.host(options_.context);
+            options.host = host.get();
+        }
         run::Player player(net_, options);
         meter_.begin(player);
         run::Stop stop = run::Stop::kNone;

@@ -61,6 +61,10 @@ TEST_CASE("several settings are one change") {
     REQUIRE(text.has_value());
     CHECK(text->find("= 1") != std::string::npos);
     CHECK(text->find("chairs: 2") != std::string::npos);
+    const std::vector<Setting> meeting{{"bare.x", "2"}, {"bare.y", "3"}};
+    const auto together = with_settings(kScene, "sweeps.pup", meeting);
+    REQUIRE(together.has_value());
+    CHECK(together->find("use bare(x: 2, y: 3)") != std::string::npos);
 }
 
 TEST_CASE("a name that is not there is told with those that are") {

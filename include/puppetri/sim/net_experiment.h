@@ -2,8 +2,10 @@
 // The experiment on a net by itself: each replication plays it up to a horizon and reads its
 // metrics.
 #pragma once
+#include <memory>
 #include <vector>
 
+#include "puppetri/net/host.h"
 #include "puppetri/run/player.h"
 #include "puppetri/sim/metric.h"
 #include "puppetri/sim/replicate.h"
@@ -16,10 +18,13 @@ class NetExperiment final : public Experiment {
         run::Limits limits;    // where a run ends; one of the two must be finite, or the net stop
         SimTime warm_up = {};  // nothing before it counts
         SimTime beat = {kTicksPerSecond};
+        // Makes the one who performs the movements of a run, for nets that ask how long they take;
+        // called from several threads. Left out: the net has no such places.
+        std::unique_ptr<net::MovementHost> (*host)(const void* context) = nullptr;
+        const void* context = nullptr;
     };
 
     // The net outlives the experiment.
-    // Needs   no place asks a movement how long it takes.
     NetExperiment(const net::Net& net, std::vector<Metric> metrics, const Options& options)
         : net_(&net), metrics_(std::move(metrics)), options_(options) {}
 

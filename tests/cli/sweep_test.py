@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""`puppetri sweep` from outside: ranges, intervals against closed forms, journals, shares, pages.
+
+Usage: sweep_test.py PROGRAM
+"""
+import csv
+import io
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+
+SHOP = """scene "A shop"
+until 8 h
+seed 3
+
+net shop(arrival: time = 12 min, service: time = 6 min, barbers = 1) {
+  place queue
+  place chair  takes exponential(service)
+  place idle   tokens barbers ready
+  arrive:             -> queue  after exponential(arrival)
+  serve: queue + idle -> chair
+  leave: chair        -> idle
+}
+use shop
+"""
+
+
+class Sweep(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+        (self.path / "shop.pup").write_text(SHOP)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def sweep(self, *arguments, environment=None, code=0, scene="shop.pup"):
+        done = subprocess.run([PROGRAM, "sweep", scene, *map(str, arguments)], capture_output=True, text=True,
+                              cwd=self.path, timeout=120, env={**os.environ, **(environment or {})})
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def rows(self, *arguments, **options):
+        return list(csv.DictReader(io.StringIO(self.sweep(*arguments, "--csv", "-", **options).stdout)))
+
+    def table(self, name):
+        return list(csv.DictReader(io.StringIO((self.path / name).read_text())))
+
+    def test_a_queue_is_as_theory_says(self):
+        row, = self.rows("--for", "1000h", "--warm-up", "50h", "--replications", 30, "--level", "99.9%",
+                         "--measure", "shop.queue.stay")
+        # M/M/1 with rho = 1/2: the mean wait is the mean service time
+        self.assertLess(abs(float(row["mean"]) - 360), float(row["half_width"]))
+        self.assertLess(float(row["half_width"]), 40)
+
+    def test_ranges_lists_and_combinations(self):
+        rows = self.rows("--vary", "shop.barbers=1..3", "--vary", "shop.service=4 min .. 8 min by 2 min",
+                         "--replications", 2, "--measure", "shop.chair.busy")
+        self.assertEqual([(r["shop.barbers"], r["shop.service"]) for r in rows],
+                         [(str(b), f"{s} min") for b in (1, 2, 3) for s in (4, 6, 8)])
+        rows = self.rows("--vary", "shop.arrival=0.5 h .. 1 h by 0.25 h", "--replications", 2,
+                         "--measure", "shop.chair.busy")
+        self.assertEqual([r["shop.arrival"] for r in rows], ["0.5 h", "0.75 h", "1 h"])
+        rows = self.rows("--vary", "shop.barbers=2, 5", "--replications", 2, "--measure", "shop.chair.busy")
+        self.assertEqual([r["shop.barbers"] for r in rows], ["2", "5"])
+
+    def test_bad_usage_is_told_and_nothing_runs(self):
+        for arguments, word in ((("--vary", "shop.barbrs=1..3"), "barbers"), (("--vary", "x"), "PARAMETER"),
+                                (("--vary", "shop.barbers=3..1"), "empty"), (("--vary", "shop.arrival=1 h .. 2 h"), "by"),
+                                (("--measure", "shop.queue.color"), "no measure"), (("--measure", "shop.q.stay"), "shop.q"),
+                                (("--until-half-width", "-1"), "precision"), (("--until-half-width", "1%"), "--measure"),
+                                (("--warm-up", "9h"), "warm-up"), (("--replications", "1"), "2")):
+            done = self.sweep(*arguments, code=2)
+            self.assertIn(word, done.stderr)
+            self.assertEqual(done.stdout, "")
+
+    def test_the_numbers_do_not_depend_on_threads(self):
+        one, two = (self.sweep("--replications", 40, "--json", "--threads", n).stdout for n in (1, 2))
+        self.assertEqual(one, two)
+
+    def test_precision_that_is_asked_for_is_reached(self):
+        row, = self.rows("--until-half-width", "4%", "--measure", "shop.chair.busy")
+        self.assertGreater(int(row["replications"]), 100)
+        self.assertLessEqual(float(row["half_width"]), 0.04 * float(row["mean"]))
+        done = self.sweep("--until-half-width", "0.1%", "--at-most", 200, "--measure", "shop.chair.busy")
+        self.assertIn("--at-most", done.stderr)
+
+    def test_a_killed_sweep_goes_on_to_the_same_numbers(self):
+        arguments = ["--for", "400h", "--replications", "4000", "--journal", "journal", "--measure", "shop.queue.stay",
+                     "--csv", "-"]
+        whole = self.rows(*[a for a in arguments if a not in ("--journal", "journal", "--csv", "-")])
+        killed = subprocess.Popen([PROGRAM, "sweep", "shop.pup", *arguments], cwd=self.path, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL)
+        journal = self.path / "journal" / "rank-0.txt"
+        for _ in range(1000):
+            if journal.exists() and journal.read_text().count("\n") > 50:
+                break
+            time.sleep(0.01)
+        killed.send_signal(signal.SIGKILL)
+        killed.wait()
+        lines = journal.read_text().count("\n")
+        self.assertGreater(lines, 50)
+        self.assertLess(lines, 4000)
+        with journal.open("a") as f:
+            f.write("0 3999 0x1.2")  # cut off in the middle of a line
+        rows = list(csv.DictReader(io.StringIO(self.sweep(*arguments).stdout)))
+        self.assertEqual(rows, whole)
+        done = self.sweep(*arguments, "--seed", 5, code=2)
+        self.assertIn("other-sweep", done.stderr)
+
+    def test_processes_share_a_sweep(self):
+        arguments = ["--replications", 31, "--measure", "shop.queue.stay"]
+        whole = self.rows(*arguments)
+        # A Slurm array: one after another, the last one tells
+        for task in (1, 2, 3):
+            done = self.sweep(*arguments, "--journal", "array", "--csv", "array.csv",
+                              environment={"SLURM_ARRAY_TASK_ID": str(task), "SLURM_ARRAY_TASK_MIN": "1",
+                                           "SLURM_ARRAY_TASK_COUNT": "3"})
+            self.assertEqual((self.path / "array.csv").exists(), task == 3, done.stderr)
+        self.assertEqual(self.table("array.csv"), whole)
+        # Open MPI: together, in stages
+        precise = ["--until-half-width", "20%", "--replications", 31, "--measure", "shop.queue.stay"]
+        whole = self.rows(*precise)
+        processes = [subprocess.Popen([PROGRAM, "sweep", "shop.pup", *map(str, precise), "--journal", "mpi", "--csv",
+                                       "mpi.csv"], cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                      env={**os.environ, "OMPI_COMM_WORLD_RANK": str(r), "OMPI_COMM_WORLD_SIZE": "3"})
+                     for r in range(3)]
+        told = [p.communicate(timeout=120)[0] for p in processes]
+        self.assertEqual([bool(t) for t in told], [True, False, False])
+        self.assertEqual(self.table("mpi.csv"), whole)
+
+    def test_a_failing_run_is_told_with_its_seed_and_the_others_go_on(self):
+        (self.path / "fragile.pup").write_text("""scene "Counts to twenty"
+until 20 s
+data count: 0 .. 20 = 0
+place bell
+ring: -> bell after exponential(1 s) set count := count + 1
+""")
+        done = self.sweep("--replications", 60, "--json", scene="fragile.pup")
+        point, = json.loads(done.stdout)["points"]
+        failures = point["failures"]
+        self.assertGreater(len(failures), 5)
+        self.assertEqual(len(failures) + point["replications"], 60)
+        again = subprocess.run([PROGRAM, "run", "fragile.pup", "--seed", failures[0]["seed"]], cwd=self.path,
+                               capture_output=True, text=True, timeout=60)
+        self.assertNotEqual(again.returncode, 0)
+
+    def test_figures_can_be_on_stage(self):
+        (self.path / "walk.pup").write_text("""scene "Somebody turns now and then"
+until 60 s
+cast { ana: mannequin }
+place rest  takes exponential(2 s)  tokens 1
+place turning  does ana.face(90 deg)  takes auto
+place back  does ana.face(0 deg)  takes auto
+go: rest -> turning
+come: turning -> back
+stay: back -> rest
+""")
+        rows = self.rows("--replications", 3, "--measure", "turning.stay", scene="walk.pup")
+        self.assertGreater(float(rows[0]["mean"]), 0.1)
+
+    def test_the_page_stands_alone(self):
+        self.sweep("--vary", "shop.barbers=1..3", "--replications", 20, "--html", "page.html")
+        page = (self.path / "page.html").read_text()
+        self.assertTrue(page.startswith("<!doctype html>"))
+        self.assertIn("shop.queue.stay", page)
+        self.assertIn("<svg", page)
+        for outside in ("http:", "https:", "src=", "@import"):
+            self.assertNotIn(outside, page)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
