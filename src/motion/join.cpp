@@ -17,10 +17,12 @@ constexpr double kBeside_s = 1e-5;   // between samples on one side
 constexpr double kReach_s = 0.06;    // what counts as either side
 constexpr double kCalm_rad_s2 = 20;  // below this nothing is a jerk
 
+// Of joints that differ by rounding alone the first one is named.
 void take(JoinValue& worst, double value, std::uint32_t joint) {
-    if (value > worst.value) {
-        worst = {value, {joint}};
+    if (value > worst.value * (1 + 1e-6)) {
+        worst.joint = {joint};
     }
+    worst.value = std::max(worst.value, value);
 }
 
 class Ruler {

@@ -84,6 +84,9 @@ class LastBegun {
     std::vector<Succession> collect() {
         std::vector<Succession> out;
         for (std::uint32_t s = 0; s < r_.graph.size(); ++s) {
+            if (std::all_of(row(s), row(s) + words_, [](std::uint64_t w) { return w == 0; })) {
+                continue;  // no path comes here
+            }
             for (std::uint64_t e = r_.graph.edges.starts[s]; e < r_.graph.edges.starts[s + 1];
                  ++e) {
                 const Edge& edge = r_.graph.edges.items[e];

@@ -209,6 +209,23 @@ std::vector<Asked> built_in_rules(const net::Net& net, const net::NetDraft& draf
         a.built_in = true;
         out.push_back(std::move(a));
     }
+    for (std::uint32_t a = 0; a < play->cast.actors.size(); ++a) {
+        const stage::Actor& actor = play->cast.actors[a];
+        Formula moves = moves_of(net, *play, a);
+        if (!actor.humanoid() ||
+            (moves.nodes.size() == 1 && moves.nodes[0].op == FormulaOp::kConstant)) {
+            continue;
+        }
+        Asked joins;
+        joins.rule.path = "builtin.movements_join." + actor.name;
+        joins.rule.caption = actor.name + " goes from each movement to the next without a jump";
+        joins.rule.kind = net::RuleKind::kNever;
+        joins.rule.operands.push_back(std::move(moves));  // where they are; not what must not be
+        joins.rule.subjects.push_back(actor.name);
+        joins.question = Question::kJoins;
+        joins.built_in = true;
+        out.push_back(std::move(joins));
+    }
     return out;
 }
 

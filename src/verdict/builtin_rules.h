@@ -18,6 +18,7 @@ enum class Question : std::uint8_t {
     kModulesEndClean,  // no run stops because something is left in a module
     kDataInRange,      // no run stops because a datum leaves its range
     kNothingStops,     // no run stops for another reason
+    kJoins,            // movements of the figure `subjects[0]` that follow each other join
     kOneOfEach,        // tokens that name an actor or a prop are conserved one by one
 };
 

@@ -13,6 +13,7 @@
 #include "asked_rules.h"
 #include "builtin_rules.h"
 #include "by_structure.h"
+#include "join_rule.h"
 #include "part.h"
 #include "plain_witness.h"
 #include "puppetri/net/tables.h"
@@ -285,7 +286,7 @@ class Prover {
     }
     // A part can be asked by itself, and the answers put together.
     static bool splits(const Asked& asked) {
-        if (asked.question == Question::kOneOfEach) {
+        if (asked.question == Question::kOneOfEach || asked.question == Question::kJoins) {
             return false;
         }
         if (asked.question != Question::kRule) {
@@ -306,6 +307,7 @@ class Prover {
     }
 
     void examine(Part& part, const std::vector<std::uint32_t>& group) {
+        joins_.reset();
         std::vector<std::uint32_t> open, numbers;
         for (const std::uint32_t i : group) {
             if (works_[i].done) {
@@ -507,7 +509,41 @@ class Prover {
         return check_on_graph(part.net(), part.obligation(number), view, kMostEdges);
     }
 
+    // First without a graph, if none is there yet: invariants may say who follows whom.
+    void judge_joins(Part& part, Method method, Work& w) {
+        if (play_ == nullptr) {
+            return;
+        }
+        if (joins_ == nullptr) {
+            joins_ = std::make_unique<JoinRule>(part, theatre_, join_book_);
+        }
+        std::uint32_t actor = 0;
+        while (play_->cast.actors[actor].name != w.asked.rule.subjects.front()) {
+            ++actor;
+        }
+        const JoinRule::Limits limits{.seconds = std::clamp(left() * 0.1, 0.0, 5.0),
+                                      .outside_events = options_.outside_events,
+                                      .cancelled = options_.budget.cancelled};
+        if (method == Method::kReadiness && !part.has(method) &&
+            joins_->judge(actor, nullptr, limits, w.verdict)) {
+            return;
+        }
+        std::string why;
+        if (graph_of(part, method, why) == nullptr) {
+            if (w.verdict.reason.empty()) {
+                w.verdict.reason = std::string(name_of(method)) + ": " + why;
+            }
+            return;
+        }
+        const GraphView view = part.view(method);
+        joins_->judge(actor, &view, limits, w.verdict);
+    }
+
     void judge(Part& part, std::uint32_t number, Method method, Work& w) {
+        if (w.asked.question == Question::kJoins) {
+            judge_joins(part, method, w);
+            return;
+        }
         std::optional<Finding> f = check(part, number, method, w.verdict);
         if (!f) {
             return;
@@ -738,6 +774,8 @@ class Prover {
     std::vector<std::uint32_t> left_over_;
     std::vector<std::uint32_t> part_of_group_;
     std::size_t next_group_ = 0;
+    JoinBook join_book_;
+    std::unique_ptr<JoinRule> joins_;  // of the part that is being looked at
 };
 
 }  // namespace

@@ -99,7 +99,8 @@ Splitting::Splitting(const net::Net& net, const net::NetDraft& draft, const stag
 }
 
 bool Splitting::reads_everything(const Asked& asked) {
-    return asked.question != Question::kRule || reads_whole_net(asked.rule);
+    return (asked.question != Question::kRule && asked.question != Question::kJoins) ||
+           reads_whole_net(asked.rule);
 }
 
 net::NetDraft Splitting::draft_of(std::uint32_t part, std::vector<net::Rule> rules) const {
