@@ -606,10 +606,11 @@ struct JoinRule::Data {
                     return refute(*whole->bad, 0, actor, v);
                 }
                 v.answer = Answer::kProved;
-                v.method = "the only run, measured";
+                v.method = "its only run";
                 v.reason.clear();
-                v.notes.push_back(std::to_string(whole->joins) +
-                                  (whole->joins == 1 ? " join" : " joins"));
+                v.notes.push_back(std::to_string(whole->joins) + (whole->joins == 1
+                                                                      ? " join on the stage"
+                                                                      : " joins on the stage"));
                 return true;
             }
         }
@@ -651,9 +652,11 @@ struct JoinRule::Data {
             return false;
         }
         v.answer = Answer::kProved;
-        v.method = complete ? "graph and runs on the stage" : "invariants and runs on the stage";
+        v.method = complete ? "graph and runs" : "invariants and runs";
         v.reason.clear();
-        v.notes.push_back(std::to_string(state.joins) + " successions, each measured in a run");
+        v.notes.push_back(std::to_string(state.joins) +
+                          (state.joins == 1 ? " succession, measured on the stage"
+                                            : " successions, each measured on the stage"));
         v.assumptions.push_back(
             "movements join after any history as in the runs that were measured");
         return true;
