@@ -238,6 +238,7 @@ class Formatter {
         }
         switch (b.kind) {
             case Kind::kComma:
+            case Kind::kSemicolon:
             case Kind::kCloseParen:
             case Kind::kCloseList:
             case Kind::kDot:

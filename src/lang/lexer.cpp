@@ -125,7 +125,7 @@ struct equal : peg::sor<peg::string<'=', '='>, peg::one<'='>> {};
 struct not_equal : peg::string<'!', '='> {};
 struct less_equal : peg::string<'<', '='> {};
 struct greater_equal : peg::string<'>', '='> {};
-struct symbol : peg::one<'(', ')', '[', ']', '{', '}', ',', ':', '<', '>', '+', '-', '*', '/', '^', '?', '.'> {};
+struct symbol : peg::one<'(', ')', '[', ']', '{', '}', ',', ';', ':', '<', '>', '+', '-', '*', '/', '^', '?', '.'> {};
 struct stray : peg::sor<peg::string<'&', '&'>, peg::string<'|', '|'>, peg::utf8::any> {};
 struct token : peg::sor<blank, word, line_end, number, text, quoted_name, count, comment, arrow, assign, dots, equal,
                         not_equal, less_equal, greater_equal, symbol, open_text, join, stray> {};
@@ -254,7 +254,6 @@ constexpr std::array kLookAlikes = {
     LookAlike{"||", Kind::kOr, "write or"},
     LookAlike{"|", Kind::kOr, "write or"},
     LookAlike{"!", Kind::kNot, "write not"},
-    LookAlike{";", Kind::kNewline, "put each statement on a line of its own"},
     LookAlike{"\xE2\x80\x9C", Kind::kEndOfFile, "write \""},
     LookAlike{"\xE2\x80\x9D", Kind::kEndOfFile, "write \""},
     LookAlike{"\xE2\x80\x98", Kind::kEndOfFile, "write '"},
@@ -466,6 +465,8 @@ std::string_view describe(Kind kind) {
             return "'}'";
         case Kind::kComma:
             return "','";
+        case Kind::kSemicolon:
+            return "';'";
         case Kind::kColon:
             return "':'";
         case Kind::kEqual:

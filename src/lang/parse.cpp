@@ -50,6 +50,7 @@ class Parser {
         for (std::uint32_t i = begin;; ++i) {
             switch (kind(i)) {
                 case Kind::kNewline:
+                case Kind::kSemicolon:
                 case Kind::kOpenBlock:
                 case Kind::kCloseBlock:
                 case Kind::kEndOfFile:
@@ -128,6 +129,14 @@ class Parser {
                     error(at_, "syntax", element, "a block needs a head before its brace",
                           "write net NAME {, cast { or the like");
                     skip_block();
+                    break;
+                case Kind::kSemicolon:
+                    if (!commas) {
+                        error(at_, "invalid-character", element,
+                              "a semicolon stands between the properties of a block only",
+                              "put each statement on a line of its own");
+                    }
+                    ++at_;
                     break;
                 case Kind::kComma:
                     if (commas) {

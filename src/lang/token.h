@@ -33,6 +33,7 @@ enum class Kind : std::uint8_t {
     kOpenBlock = '{',
     kCloseBlock = '}',
     kComma = ',',
+    kSemicolon = ';',  // between properties, like a comma
     kColon = ':',
     kEqual = '=',  // = and ==
     kLess = '<',

@@ -40,9 +40,9 @@ class SideBySide final : public Movement {
         main_->sample(t_s, out);
         arms_->sample(t_s, out);
     }
-    void overlay(double t_s, figure::Pose& pose) const override {
-        main_->overlay(t_s, pose);
-        arms_->overlay(t_s, pose);
+    void overlay(double t_s, LimbSet which, figure::Pose& pose) const override {
+        main_->overlay(t_s, without(shared(which, main_->overlays), arms_->limbs), pose);
+        arms_->overlay(t_s, shared(which, arms_->overlays), pose);
     }
 
  private:
@@ -79,9 +79,9 @@ class InTurn final : public Movement {
         const std::size_t i = part_at(t_s);
         parts_[i]->sample(t_s - starts_s_[i], out);
     }
-    void overlay(double t_s, figure::Pose& pose) const override {
+    void overlay(double t_s, LimbSet which, figure::Pose& pose) const override {
         const std::size_t i = part_at(t_s);
-        parts_[i]->overlay(t_s - starts_s_[i], pose);
+        parts_[i]->overlay(t_s - starts_s_[i], shared(which, parts_[i]->overlays), pose);
     }
 
  private:

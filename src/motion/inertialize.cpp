@@ -113,6 +113,41 @@ void InertialArm::apply(double t_s, ArmControl& arm) const {
     arm.world_weight += world_weight_.at(t_s);
 }
 
+InertialLeg::InertialLeg(const LegControl& now, const ControlsRate::Leg& rate,
+                         const LegControl& own, const ControlsRate::Leg& own_rate, double blend_s)
+    : ankle_(now.ankle_world - own.ankle_world,
+             rate.ankle_velocity_world - own_rate.ankle_velocity_world, blend_s),
+      foot_(of_rotation(now.foot_rotation_world, rate.foot_angular_world, own.foot_rotation_world,
+                        own_rate.foot_angular_world, blend_s)),
+      toes_(now.toe_bend_rad - own.toe_bend_rad, rate.toe_bend_rad_s - own_rate.toe_bend_rad_s,
+            blend_s),
+      swivel_(now.swivel_rad - own.swivel_rad, rate.swivel_rad_s - own_rate.swivel_rad_s, blend_s) {
+}
+
+void InertialLeg::apply(double t_s, LegControl& leg) const {
+    leg.ankle_world = leg.ankle_world + ankle_.at(t_s);
+    turn(leg.foot_rotation_world, foot_.at(t_s));
+    leg.toe_bend_rad += toes_.at(t_s);
+    leg.swivel_rad += swivel_.at(t_s);
+}
+
+InertialJoint::InertialJoint(const Transform& now_earlier, const Transform& now,
+                             const Transform& own, const Transform& own_later, double dt_s,
+                             double blend_s)
+    : turn_(of_rotation(now.rotation, angular_velocity(now_earlier.rotation, now.rotation, dt_s),
+                        own.rotation, angular_velocity(own.rotation, own_later.rotation, dt_s),
+                        blend_s)),
+      shift_(now.translation - own.translation,
+             ((now.translation - now_earlier.translation) -
+              (own_later.translation - own.translation)) *
+                 (1 / dt_s),
+             blend_s) {}
+
+void InertialJoint::apply(double t_s, Transform& parent_from_joint) const {
+    turn(parent_from_joint.rotation, turn_.at(t_s));
+    parent_from_joint.translation = parent_from_joint.translation + shift_.at(t_s);
+}
+
 namespace {
 
 ControlsRate turning_of_pelvis(const ControlsRate& rate) {

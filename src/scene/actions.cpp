@@ -106,8 +106,28 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
     }
     const SubjectKind kind = out.subject.kind;
     const MovementSignature* signature = motion::find_movement(name.text, kind);
+    const OwnDefinition* own =
+        signature == nullptr ? own_movement(name.text, call.span.file) : nullptr;
+    if (own != nullptr) {
+        if (kind != SubjectKind::kActor) {
+            error("wrong-subject", who.span,
+                  name.text + " is a movement of an actor, and this is " + name_of(kind),
+                  "name an actor");
+            return std::nullopt;
+        }
+        if (own->movement == nullptr) {
+            return std::nullopt;  // what is wrong with it has been told
+        }
+        out.own = own->movement;
+        const std::size_t before = diagnostics.size();
+        bind_arguments(call, own->movement->signature(), scope, out);
+        if (diagnostics.size() == before) {
+            check_own_call(*own, out, call.span);
+        }
+        return out;
+    }
     if (signature == nullptr) {
-        std::vector<std::string> known;
+        std::vector<std::string> known = own_movement_names(call.span.file);
         for (const MovementSignature& m : motion::movement_library()) {
             if (m.subject == kind) {
                 known.emplace_back(m.name);
@@ -137,7 +157,14 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
 // In a net that is checked alone nobody moves yet; but the movement's name can be wrong already.
 void Elaboration::check_stand_in_call(const lang::Expr& call, const Scope& scope) {
     const std::string& name = call.path.steps.back().text;
-    std::vector<std::string> known;
+    std::vector<std::string> known = own_movement_names(call.span.file);
+    if (const OwnDefinition* own = own_movement(name, call.span.file)) {
+        if (own->movement != nullptr) {
+            motion::BoundCall ignored;
+            bind_arguments(call, own->movement->signature(), scope, ignored);
+        }
+        return;
+    }
     for (const MovementSignature& m : motion::movement_library()) {
         if (m.name == name) {
             motion::BoundCall ignored;
@@ -258,9 +285,11 @@ std::optional<motion::ArgumentValue> Elaboration::bind_argument(const lang::Expr
 Term Elaboration::movement_value(const lang::Expr& e, const lang::Path& path, const Scope& scope) {
     MovementTerm out;
     out.call.movement = path.steps[0].text;
-    const MovementSignature* signature =
-        motion::find_movement(out.call.movement, SubjectKind::kActor);
-    bind_arguments(e, *signature, scope, out.call);
+    if (const OwnDefinition* own = own_movement(out.call.movement, e.span.file);
+        own != nullptr && own->movement != nullptr) {
+        out.call.own = own->movement;
+    }
+    bind_arguments(e, motion::signature_of(out.call, SubjectKind::kActor), scope, out.call);
     return out;
 }
 

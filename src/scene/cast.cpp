@@ -309,8 +309,11 @@ void Elaboration::complete_blocks() {
         About about(*this, block->kind.text + " " + block->name.text, block->span);
         if (block->kind.text == "camera") {
             add_camera(*block);
+        } else if (is_movement_kind(block->kind.text)) {
+            define_movement(*block);
         } else {
-            unknown(block->kind.span, "kind of block", block->kind.text, {"camera"});
+            unknown(block->kind.span, "kind of block", block->kind.text,
+                    {"camera", "movement", "keyframes", "clip"});
         }
     }
 }

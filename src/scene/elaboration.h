@@ -7,7 +7,9 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -16,7 +18,9 @@
 #include <vector>
 
 #include "library.h"
+#include "puppetri/motion/formula_movement.h"
 #include "puppetri/motion/library.h"
+#include "puppetri/motion/own_movement.h"
 #include "puppetri/net/draft.h"
 #include "puppetri/scene/scene.h"
 #include "term.h"
@@ -45,10 +49,21 @@ struct Scope {
     bool sees_all = false;  // rules and cameras see what is not public, too
 };
 
-struct Function;  // functions.cpp
+struct Function;  // functions.h
 
-// A movement that may be an argument of others: `carry` in `arms: carry(ball)`.
-bool is_argument_movement(std::string_view name);
+// A movement that a file defines; `movement` is null where something is wrong with it.
+struct OwnDefinition {
+    const lang::Block* block = nullptr;
+    motion::OwnMovementPtr movement = {};
+    std::shared_ptr<const motion::FormulaMaker> formula = {};  // of a movement by formula
+    bool humanoid = true;                    // its DOFs are those of humanoids
+    std::vector<std::string> dofs = {};      // that it drives, and where it says so
+    std::vector<lang::Span> dof_spans = {};
+    std::vector<std::string> events = {};    // that it raises
+
+    // Fills what it drives: limbs, and whether it may be an argument.
+    void limbs_of_definition(motion::OwnSignature& signature, const motion::PosedSpec& spec);
+};
 
 enum class MemberKind : std::uint8_t {
     kPlace,
@@ -128,6 +143,8 @@ class Elaboration {
 
  private:
     friend class About;
+    friend class FormulaBlock;
+    friend class FormulaCompiler;
 
     // telling.cpp
     void tell(Severity severity, std::string code, lang::Span where, std::string message,
@@ -264,6 +281,17 @@ class Elaboration {
                                                        const motion::Parameter& parameter,
                                                        const Scope& scope, motion::BoundCall& out);
     Term movement_value(const lang::Expr& e, const lang::Path& path, const Scope& scope);
+    // own_movements.cpp -- movements that files define
+    const OwnDefinition* own_movement(std::string_view name, std::uint32_t file);
+    const OwnDefinition& define_movement(const lang::Block& block);
+    std::string read_own_parameters(
+        const lang::Block& block, motion::OwnSignature& signature,
+        const std::function<void(const std::string&, motion::ParameterType, lang::Dimension)>& add);
+    void check_own_call(const OwnDefinition& definition, const motion::BoundCall& call,
+                        lang::Span where);
+    // A movement that may be an argument of others: `carry` in `arms: carry(ball)`.
+    bool is_argument_movement(std::string_view name, std::uint32_t file);
+    std::vector<std::string> own_movement_names(std::uint32_t file) const;
     void complete_transitions();
     void complete_transition(std::size_t index);
     void complete_arcs(std::size_t index, Locals& locals);
@@ -307,6 +335,7 @@ class Elaboration {
         cast_;  // by file and name, added on demand
     std::map<std::string, lang::Span> cast_where_;
     std::map<NodeKey, std::uint32_t> enumerations_;
+    std::map<NodeKey, OwnDefinition> own_movements_;  // by block
 };
 
 // Says for a while what is being looked at, for messages.

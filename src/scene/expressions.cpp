@@ -3,6 +3,7 @@
 // expression of the kernel; what speaks of places, firings and figures becomes a formula.
 #include "elaboration.h"
 #include "puppetri/lang/units.h"
+#include "puppetri/math/rotation.h"
 
 namespace puppetri::scene {
 namespace {
@@ -144,11 +145,14 @@ Term Elaboration::evaluate_path(const lang::Expr& e, const Scope& scope) {
             return std::move(*found);
         }
         const std::string& name = e.path.steps[0].text;
-        if (is_argument_movement(name)) {
+        if (is_argument_movement(name, e.span.file)) {
             return movement_value(e, e.path, scope);
         }
         if (is_word(name)) {
             return Word{name};
+        }
+        if (name == "pi") {
+            return Number{.exact = {1, 1}, .pi_power = 1, .value = kPi};
         }
     }
     return resolve(e.path, scope);

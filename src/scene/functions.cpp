@@ -4,17 +4,11 @@
 #include <cmath>
 
 #include "elaboration.h"
+#include "functions.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/lang/units.h"
 
 namespace puppetri::scene {
-
-struct Function {
-    const char* name;
-    ExprOp op;
-    int operands;
-    double (*fold)(double, double);  // of constants without unit; null: folded by hand
-};
 
 namespace {
 
@@ -39,6 +33,10 @@ const Function kFunctions[] = {
     {"pow", ExprOp::kPow, 2, [](double x, double y) { return pow(x, y); }},
 };
 
+}  // namespace
+
+std::span<const Function> functions() { return kFunctions; }
+
 const Function* find_function(std::string_view name) {
     for (const Function& f : kFunctions) {
         if (name == f.name) {
@@ -46,13 +44,6 @@ const Function* find_function(std::string_view name) {
         }
     }
     return nullptr;
-}
-
-}  // namespace
-
-bool is_argument_movement(std::string_view name) {
-    const motion::MovementSignature* m = motion::find_movement(name, motion::SubjectKind::kActor);
-    return m != nullptr && m->as_argument;
 }
 
 Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
@@ -73,7 +64,7 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
             }
             return call_function(e, *f, scope);
         }
-        if (is_argument_movement(name)) {
+        if (is_argument_movement(name, e.span.file)) {
             return movement_value(e, e.path, scope);
         }
         for (const motion::MovementSignature& m : motion::movement_library()) {
@@ -146,7 +137,7 @@ Term Elaboration::call_function(const lang::Expr& e, const Function& f, const Sc
         }
         return best;
     }
-    const bool angle = f.op == ExprOp::kSin || f.op == ExprOp::kCos || f.op == ExprOp::kTan;
+    const bool angle = takes_angle(f.op);
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const Number& n = std::get<Number>(terms[i]);
         if (!n.plain() && !(angle && n.dimension == lang::dimension::kAngle)) {
@@ -165,8 +156,8 @@ Term Elaboration::call_function(const lang::Expr& e, const Function& f, const Sc
             return Number::whole(static_cast<std::int64_t>(value));
         }
     }
-    const bool inverse = f.op == ExprOp::kAsin || f.op == ExprOp::kAcos || f.op == ExprOp::kAtan2;
-    return from_double(value, inverse ? lang::dimension::kAngle : lang::dimension::kNone);
+    return from_double(value,
+                       gives_angle(f.op) ? lang::dimension::kAngle : lang::dimension::kNone);
 }
 
 }  // namespace puppetri::scene

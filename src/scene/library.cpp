@@ -61,6 +61,11 @@ class Loader {
         for (const lang::TokenType& t : body.token_types) {
             declare(names, t.name, {.file = number, .token_type = &t});
         }
+        for (const lang::Block& block : body.blocks) {
+            if (is_movement_kind(block.kind.text) && !block.name.text.empty()) {
+                declare(names, block.name, {.file = number, .block = &block});
+            }
+        }
         library_.visible.push_back(std::move(names));
         return number;
     }
@@ -158,6 +163,10 @@ class Loader {
 };
 
 }  // namespace
+
+bool is_movement_kind(std::string_view kind) {
+    return kind == "movement" || kind == "keyframes" || kind == "clip";
+}
 
 Library load_library(FileSource& source, const std::string& path) {
     return Loader(source).load(path);

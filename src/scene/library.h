@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
@@ -21,6 +22,7 @@ struct Declaration {
     const lang::Net* net = nullptr;
     const lang::Enumeration* enumeration = nullptr;
     const lang::TokenType* token_type = nullptr;
+    const lang::Block* block = nullptr;  // that defines a movement
 };
 
 struct Library {
@@ -35,6 +37,9 @@ struct Library {
         return span.file < files.size() ? files[span.file].where(span) : SourceSpan{};
     }
 };
+
+// Kinds of block that define movements.
+bool is_movement_kind(std::string_view kind);
 
 // Reads and parses everything that `path` needs. Files that import each other are fine; nets that
 // contain each other are found where they are instantiated.

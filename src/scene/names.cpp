@@ -273,8 +273,17 @@ net::EventIndex Elaboration::movement_event(net::PlaceIndex place, const lang::N
         error("no-member", name.span, "place " + element.path + " runs no net and does no movement",
               "only a place with `runs` or `does` has something inside");
     } else if (!is_one_of(kMovementEvents, name.text)) {
-        unknown(name.span, "event of a movement", name.text,
-                {std::begin(kMovementEvents), std::end(kMovementEvents)});
+        std::vector<std::string> known(std::begin(kMovementEvents), std::end(kMovementEvents));
+        const lang::Expr& does = element.node->does;
+        if (!does.path.empty()) {
+            if (const OwnDefinition* own =
+                    own_movement(does.path.steps.back().text, does.span.file)) {
+                known.insert(known.end(), own->events.begin(), own->events.end());
+            }
+        }
+        if (std::find(known.begin(), known.end(), name.text) == known.end()) {
+            unknown(name.span, "event of a movement", name.text, known);
+        }
     }
     for (const stage::RaisedName& raised : element.raises) {
         if (raised.name == name.text) {

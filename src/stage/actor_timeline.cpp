@@ -11,6 +11,7 @@ using motion::Limb;
 using motion::LimbSet;
 
 void ActorTimeline::take(LimbSet limbs, const Charge& charge) {
+    has_overlays_ = has_overlays_ || charge.movement->overlays.bits != 0;
     for (int i = 0; i < motion::kLimbCount; ++i) {
         if (!limbs.has(static_cast<Limb>(i))) {
             continue;
@@ -58,6 +59,40 @@ void ActorTimeline::sample(SimTime at, motion::Controls& out, bool before) const
         motion::Controls own = out;
         charge.movement->sample((at - charge.start).seconds(), own);
         motion::copy_limbs(mine, own, out);
+    }
+}
+
+void ActorTimeline::overlay(SimTime at, figure::Pose& pose, bool before) const {
+    if (!has_overlays_) {
+        return;
+    }
+    std::uint32_t done = 0;
+    for (int i = 0; i < motion::kLimbCount; ++i) {
+        const Limb limb = static_cast<Limb>(i);
+        const Charge& charge = in_charge(limb, at, before);
+        if (!charge.poses(limb) || ((done >> i) & 1)) {
+            continue;
+        }
+        LimbSet mine = motion::limb_set(limb);
+        for (int j = i + 1; j < motion::kLimbCount; ++j) {
+            const Limb next = static_cast<Limb>(j);
+            const Charge& other = in_charge(next, at, before);
+            if (other.movement == charge.movement && other.start == charge.start &&
+                other.poses(next)) {
+                mine = mine.with(next);
+            }
+        }
+        done |= mine.bits;
+        charge.movement->overlay((at - charge.start).seconds(), mine, pose);
+    }
+    for (int i = 0; i < motion::kLimbCount; ++i) {
+        const Charge& charge = in_charge(static_cast<Limb>(i), at, before);
+        if (charge.join != nullptr) {
+            const double since_s = (at - charge.from).seconds();
+            for (const auto& [joint, offset] : charge.join->joints) {
+                offset.apply(since_s, pose.parent_from_joint[joint.value]);
+            }
+        }
     }
 }
 

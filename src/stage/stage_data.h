@@ -12,6 +12,7 @@
 
 #include "puppetri/base/hash.h"
 #include "puppetri/motion/arms.h"
+#include "puppetri/motion/controls_from_pose.h"
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/stage/stage.h"
@@ -26,6 +27,7 @@ using motion::MotionContext;
 using motion::MovementPtr;
 
 inline constexpr SimTime kMoment{kTicksPerSecond / 10'000};  // over which rates are taken
+inline constexpr SimTime kJointFade{kTicksPerSecond * 3 / 10};  // of what joints do beyond controls
 
 // One performance of an action.
 struct Activity {
@@ -207,6 +209,7 @@ struct Stage::Data {
             rest_after_cut(number);
         }
         cuts.clear();
+        join_joints();
         while (!releases.empty() && releases.front().at < at) {
             let_go(releases.front());
             releases.erase(releases.begin());
@@ -238,6 +241,52 @@ struct Stage::Data {
         }
         if (free.bits != 0) {
             take_limbs(activity.actor, free, motion::make_idle(context, {.limbs = free}), ~0u);
+        }
+    }
+
+    // Movements that pose joints beyond controls: where one follows or is followed, the difference
+    // that the controls do not know of fades. Where neither does there is none.
+    void join_joints() {
+        for (std::uint32_t i = 0; now >= SimTime{0} && i < take.actors.size(); ++i) {
+            ActorTimeline& timeline = take.actors[i].timeline;
+            if (!timeline.has_overlays()) {
+                continue;
+            }
+            LimbSet joined;
+            for (int k = 0; k < motion::kLimbCount; ++k) {
+                const Limb limb = static_cast<Limb>(k);
+                const Charge& next = timeline.in_charge(limb, now);
+                const Charge& last = timeline.in_charge(limb, now, true);
+                const bool fades = last.join != nullptr && now - last.from < kJointFade;
+                if (next.from == now && (next.poses(limb) || last.poses(limb) || fades)) {
+                    joined = joined.with(limb);
+                }
+            }
+            if (joined.bits == 0) {
+                continue;
+            }
+            figure::Pose earlier, last, next, later;
+            take.pose(ActorIndex{i}, std::max(now - kMoment, SimTime{0}), earlier, true);
+            take.pose(ActorIndex{i}, now, last, true);
+            take.pose(ActorIndex{i}, now, next);
+            take.pose(ActorIndex{i}, now + kMoment, later);
+            for (int k = 0; k < motion::kLimbCount; ++k) {
+                const Limb limb = static_cast<Limb>(k);
+                if (!joined.has(limb)) {
+                    continue;
+                }
+                auto join = std::make_shared<JointJoin>();
+                for (const figure::JointIndex joint :
+                     motion::joints_of(*take.actors[i].figure, limb)) {
+                    const auto at = [&](const figure::Pose& p) {
+                        return p.parent_from_joint[joint.value];
+                    };
+                    join->joints.emplace_back(
+                        joint, motion::InertialJoint(at(earlier), at(last), at(next), at(later),
+                                                     kMoment.seconds(), kJointFade.seconds()));
+                }
+                timeline.join(limb, std::move(join));
+            }
         }
     }
 

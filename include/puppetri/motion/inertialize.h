@@ -66,6 +66,34 @@ class InertialArm {
     bool holds_world_ = false;
 };
 
+// Ankle, foot, toes and knee of a leg that a movement moves without planning it against what it
+// finds.
+class InertialLeg {
+ public:
+    InertialLeg() = default;
+    InertialLeg(const LegControl& now, const ControlsRate::Leg& rate, const LegControl& own,
+                const ControlsRate::Leg& own_rate, double blend_s);
+    void apply(double t_s, LegControl& leg) const;
+
+ private:
+    InertialOffset3 ankle_, foot_;
+    InertialOffset toes_, swivel_;
+};
+
+// A joint against what it is otherwise: now = offset * own, in its parent's space. For poses beyond
+// controls.
+class InertialJoint {
+ public:
+    InertialJoint() = default;
+    // Rates from the transforms a moment of dt_s > 0 earlier (now) and later (own).
+    InertialJoint(const Transform& now_earlier, const Transform& now, const Transform& own,
+                  const Transform& own_later, double dt_s, double blend_s);
+    void apply(double t_s, Transform& parent_from_joint) const;
+
+ private:
+    InertialOffset3 turn_, shift_;
+};
+
 // Of all in a figure that a movement of the whole body does not plan against what it finds: the
 // rotation of the pelvis, trunk and head, arms, the swivels of the knees. The movement itself joins
 // the pelvis's place and the feet.

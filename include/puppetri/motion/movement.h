@@ -49,17 +49,17 @@ class Movement {
     // hand keeps carrying), since the next may be late. Needs t >= 0. Cost: no allocation.
     virtual void sample(double t_s, Controls& out) const = 0;
 
-    // Changes the joints of `overlays`, and no others, at t seconds after the start: what controls
-    // cannot say. The pose it gets is what the sampled controls were solved into (of a figure
+    // Changes the joints of `which`, a part of `overlays`, and no others, at t seconds after the
+    // start: what controls cannot say. The pose it gets is what the sampled controls were solved into (of a figure
     // without controls: the rest pose), so that what the movement does to a joint goes on top of
     // whatever else is done to the controls.
     // Cost: no allocation.
-    virtual void overlay(double t_s, figure::Pose& pose) const;
+    virtual void overlay(double t_s, LimbSet which, figure::Pose& pose) const;
 };
 
 // Stateful values never change after preparing, so that sharing is safe.
 using MovementPtr = std::shared_ptr<const Movement>;
 
-inline void Movement::overlay(double, figure::Pose&) const {}
+inline void Movement::overlay(double, LimbSet, figure::Pose&) const {}
 
 }  // namespace puppetri::motion

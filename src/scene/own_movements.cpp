@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: MIT
+// Movements that a file defines: `movement nod(me: actor) { ... }`. What `does` may call beside the
+// library, with the same signatures and the same errors.
+#include <algorithm>
+
+#include "elaboration.h"
+#include "formula_compiler.h"
+#include "puppetri/lang/units.h"
+#include "puppetri/motion/formula_movement.h"
+
+namespace puppetri::scene {
+
+using motion::Limb;
+using motion::ParameterType;
+using motion::PathSpace;
+
+namespace {
+
+struct NamedType {
+    const char* name;
+    ParameterType type;
+    lang::Dimension dimension;
+};
+constexpr NamedType kTypes[] = {
+    {"actor", ParameterType::kActor, {}},
+    {"angle", ParameterType::kAngle, lang::dimension::kAngle},
+    {"bool", ParameterType::kBool, {}},
+    {"int", ParameterType::kInt, {}},
+    {"length", ParameterType::kLength, lang::dimension::kLength},
+    {"point", ParameterType::kPoint, {}},
+    {"prop", ParameterType::kProp, {}},
+    {"real", ParameterType::kReal, {}},
+    {"side", ParameterType::kSide, {}},
+    {"time", ParameterType::kTime, lang::dimension::kTime},
+};
+
+bool is_thing(ParameterType type) {
+    return type == ParameterType::kActor || type == ParameterType::kProp ||
+           type == ParameterType::kPoint;
+}
+
+struct NamedEnd {
+    const char* name;
+    Limb limb;
+    PathSpace space;
+};
+constexpr NamedEnd kEnds[] = {
+    {"left_foot", Limb::kLeftLeg, PathSpace::kStart},
+    {"left_hand", Limb::kLeftArm, PathSpace::kChest},
+    {"pelvis", Limb::kPelvis, PathSpace::kStart},
+    {"right_foot", Limb::kRightLeg, PathSpace::kStart},
+    {"right_hand", Limb::kRightArm, PathSpace::kChest},
+};
+
+const figure::DofSet& mannequin_dofs() {
+    static const figure::DofSet dofs = figure::humanoid_dofs(figure::make_mannequin(1.75));
+    return dofs;
+}
+
+bool is_word(const lang::Expr& e, std::string_view word) {
+    return e.kind == lang::ExprKind::kPath && e.path.steps.size() == 1 &&
+           e.path.steps[0].text == word;
+}
+bool is_symbol(const lang::Expr& e, std::string_view text) {
+    return e.kind == lang::ExprKind::kSymbol && e.text == text;
+}
+
+}  // namespace
+
+// A block `movement`, on its way to a definition.
+class FormulaBlock {
+ public:
+    FormulaBlock(Elaboration& elaboration, const lang::Block& block)
+        : e_(elaboration), block_(block), compiler_(elaboration, formula_) {
+        formula_.spec.name = block.name.text;
+        signature_.name = block.name.text;
+    }
+
+    OwnDefinition define() {
+        const std::size_t before = e_.diagnostics.size();
+        me_ = e_.read_own_parameters(block_, signature_, [this](const std::string& name,
+                                                                ParameterType type,
+                                                                lang::Dimension dimension) {
+            is_thing(type) ? compiler_.add_thing(name) : compiler_.add_number(name, dimension);
+        });
+        for (const lang::Property& p : block_.properties) {
+            read(p);
+        }
+        if (!formula_.takes.valid()) {
+            e_.error("no-duration", block_.name.span, "it does not say how long it takes",
+                     "write `takes 1 s`");
+        }
+        if (formula_.spec.dofs.empty() && formula_.spec.paths.empty()) {
+            e_.error("nothing-moves", block_.name.span, "it moves nothing",
+                     "write `" + (me_.empty() ? "me" : me_) + ".head.flex = ...`");
+        }
+        const bool good = std::none_of(
+            e_.diagnostics.begin() + static_cast<std::ptrdiff_t>(before), e_.diagnostics.end(),
+            [](const Diagnostic& d) { return d.severity == Severity::kError; });
+        OwnDefinition out{.block = &block_};
+        for (const auto& event : formula_.spec.events) {
+            out.events.push_back(event.name);
+        }
+        if (!good) {
+            return out;
+        }
+        out.limbs_of_definition(signature_, formula_.spec);
+        out.dof_spans = std::move(dof_spans_);
+        const std::vector<std::string> dofs = formula_.spec.dofs;
+        auto maker = std::make_shared<const motion::FormulaMaker>(std::move(formula_));
+        out.dofs = dofs;
+        out.formula = maker;
+        out.movement = std::make_shared<const motion::OwnMovement>(std::move(signature_), maker);
+        return out;
+    }
+
+ private:
+    void read(const lang::Property& p) {
+        const auto& steps = p.name.steps;
+        if (p.has_children) {
+            e_.error("wrong-property", p.span, "nothing can stand in braces here",
+                     "write one formula per line");
+        } else if (steps.size() > 1) {
+            drive(p);
+        } else if (!p.values.empty() && is_symbol(p.values[0], "=")) {
+            if (p.values.size() == 2) {
+                compiler_.add_local(steps[0], p.values[1]);
+            } else {
+                form(p, "a = 15 deg");
+            }
+        } else if (steps[0].text == "takes") {
+            if (p.values.size() == 1) {
+                compiler_.about("takes");
+                formula_.takes = compiler_.program(p.values[0], lang::dimension::kTime)
+                                     .value_or(formula_.takes);
+            } else {
+                form(p, "takes 1 s");
+            }
+        } else if (steps[0].text == "at") {
+            event(p);
+        } else if (steps[0].text == "loop" && p.values.empty()) {
+            formula_.spec.loops = true;
+        } else {
+            e_.unknown(p.name.span, "property of a movement", lang::to_text(p.name),
+                       {"takes", "at", "loop", (me_.empty() ? "me" : me_) + ".head.flex"});
+        }
+    }
+
+    void form(const lang::Property& p, const std::string& example) {
+        e_.error("wrong-property", p.span, lang::to_text(p.name) + " is not written like this",
+                 "write `" + example + "`");
+    }
+
+    // at 0.5 s raises clap
+    void event(const lang::Property& p) {
+        if (p.values.size() != 3 || !is_word(p.values[1], "raises") ||
+            p.values[2].kind != lang::ExprKind::kPath || p.values[2].path.steps.size() != 1) {
+            form(p, "at 0.5 s raises clap");
+            return;
+        }
+        const auto at = e_.constant_number(p.values[0], {}, lang::dimension::kTime,
+                                           "the time of an event");
+        if (at && at->value < 0) {
+            e_.error("negative-time", p.values[0].span, "a movement begins at 0 s",
+                     "write a later time");
+        } else if (at) {
+            formula_.spec.events.push_back(
+                {at->value, p.values[2].path.steps[0].text, Limb::kPelvis});
+        }
+    }
+
+    // me.head.flex = ..., me.right_hand.position = (...) m in chest
+    void drive(const lang::Property& p) {
+        const auto& steps = p.name.steps;
+        if (steps[0].text != me_) {
+            e_.error("wrong-subject", steps[0].span,
+                     "a movement moves its actor, " + (me_.empty() ? "its first parameter" : me_),
+                     "write `" + me_ + "." + steps.back().text + " = ...`");
+            return;
+        }
+        if (p.values.size() < 2 || !is_symbol(p.values[0], "=")) {
+            form(p, lang::to_text(p.name) + " = 15 deg * sin(2*pi*t/1 s)");
+            return;
+        }
+        std::string name;
+        for (std::size_t i = 1; i < steps.size(); ++i) {
+            name += (i > 1 ? "." : "") + steps[i].text;
+        }
+        compiler_.about(name);
+        if (steps.size() == 3 && steps[2].text == "position") {
+            path(p, steps[1]);
+            return;
+        }
+        if (p.values.size() != 2) {
+            form(p, lang::to_text(p.name) + " = 15 deg * sin(2*pi*t/1 s)");
+            return;
+        }
+        auto& dofs = formula_.spec.dofs;
+        if (std::find(dofs.begin(), dofs.end(), name) != dofs.end()) {
+            e_.error("name-twice", p.name.span, name + " has a formula already",
+                     "add the two in one formula");
+            return;
+        }
+        const figure::DofIndex known = mannequin_dofs().find(name);
+        const bool slides =
+            known.valid() &&
+            mannequin_dofs().dofs[known.value].kind == figure::DofKind::kSlide;
+        // DOFs of other figures: what the formula gives says whether they turn or slide.
+        std::optional<ProgramIndex> program;
+        if (known.valid()) {
+            program = compiler_.program(
+                p.values[1], slides ? lang::dimension::kLength : lang::dimension::kAngle);
+        } else if (const auto value = compiler_.number(p.values[1])) {
+            const bool length = value->fits(lang::dimension::kLength) && !value->zero;
+            program = compiler_.program(
+                p.values[1], length ? lang::dimension::kLength : lang::dimension::kAngle);
+        }
+        if (program) {
+            dofs.push_back(name);
+            dof_spans_.push_back(p.name.span);
+            formula_.dofs.push_back(*program);
+            formula_.dof_where.push_back(e_.at(p.span));
+        }
+    }
+
+    void path(const lang::Property& p, const lang::Name& end) {
+        const NamedEnd* found = nullptr;
+        std::vector<std::string> known;
+        for (const NamedEnd& n : kEnds) {
+            known.emplace_back(n.name);
+            found = end.text == n.name ? &n : found;
+        }
+        if (found == nullptr) {
+            e_.unknown(end.span, "hand or foot", end.text, known);
+            return;
+        }
+        motion::DrivenPath driven{found->limb, found->space};
+        const bool hand = found->limb == Limb::kLeftArm || found->limb == Limb::kRightArm;
+        if (p.values.size() == 4 && is_word(p.values[2], "in") &&
+            p.values[3].kind == lang::ExprKind::kPath) {
+            const std::string space = lang::to_text(p.values[3]);
+            if (space == "world") {
+                driven.space = PathSpace::kWorld;
+            } else if (space == "start") {
+                driven.space = PathSpace::kStart;
+            } else if (space == "chest" && hand) {
+                driven.space = PathSpace::kChest;
+            } else {
+                e_.unknown(p.values[3].span, "space", space,
+                           hand ? std::vector<std::string>{"chest", "start", "world"}
+                                : std::vector<std::string>{"start", "world"});
+                return;
+            }
+        } else if (p.values.size() != 2) {
+            form(p, lang::to_text(p.name) + " = (0.2, 0.3, 0.4) m in chest");
+            return;
+        }
+        auto& paths = formula_.spec.paths;
+        if (std::any_of(paths.begin(), paths.end(), [&](const motion::DrivenPath& other) {
+                return other.limb == driven.limb;
+            })) {
+            e_.error("name-twice", p.name.span, end.text + " has a way already",
+                     "write one way for it");
+            return;
+        }
+        if (const auto programs = compiler_.path(p.values[1])) {
+            paths.push_back(driven);
+            formula_.paths.push_back(*programs);
+            formula_.path_where.push_back(e_.at(p.span));
+        }
+    }
+
+    Elaboration& e_;
+    const lang::Block& block_;
+    motion::OwnSignature signature_;
+    motion::FormulaMovement formula_;
+    FormulaCompiler compiler_;
+    std::string me_;
+    std::vector<lang::Span> dof_spans_;
+};
+
+void OwnDefinition::limbs_of_definition(motion::OwnSignature& signature,
+                                        const motion::PosedSpec& spec) {
+    static const figure::Figure figure = figure::make_mannequin(1.75);
+    humanoid = std::all_of(spec.dofs.begin(), spec.dofs.end(), [](const std::string& name) {
+        return mannequin_dofs().find(name).valid();
+    });
+    signature.limbs =
+        humanoid ? motion::limbs_of(figure, spec) : motion::LimbSet{};
+    signature.as_argument =
+        signature.limbs.bits != 0 &&
+        motion::without(signature.limbs, motion::kBothArms).bits == 0;
+}
+
+std::string Elaboration::read_own_parameters(
+    const lang::Block& block, motion::OwnSignature& signature,
+    const std::function<void(const std::string&, ParameterType, lang::Dimension)>& add) {
+    std::vector<std::string> types;
+    for (const NamedType& t : kTypes) {
+        types.emplace_back(t.name);
+    }
+    std::string me;
+    std::set<std::string> names;
+    for (const lang::Parameter& p : block.parameters) {
+        const bool first = &p == &block.parameters.front();
+        if (!names.insert(p.name.text).second) {
+            error("name-twice", p.name.span, "two parameters are called " + p.name.text,
+                  "rename one");
+            continue;
+        }
+        const std::string written = p.type ? lang::to_text(p.type) : "";
+        if (first) {
+            if (written != "actor") {
+                error("wrong-type", p.span, "the first parameter of a movement is who moves",
+                      "write `" + block.kind.text + " " + block.name.text + "(me: actor)`");
+            }
+            me = p.name.text;
+            continue;
+        }
+        std::optional<Number> standard;
+        if (p.default_value) {
+            const Term term = evaluate(p.default_value, {});
+            if (const Number* n = std::get_if<Number>(&term)) {
+                standard = *n;
+            } else if (const bool* b = std::get_if<bool>(&term)) {
+                standard = Number::whole(*b ? 1 : 0);
+            } else if (const Word* w = std::get_if<Word>(&term);
+                       w != nullptr && (w->text == "left" || w->text == "right")) {
+                standard = Number::whole(w->text == "right" ? 1 : 0);
+            } else if (!is_nothing(term)) {
+                wrong(p.default_value.span, "a number", term);
+            }
+        }
+        const NamedType* type = nullptr;
+        for (const NamedType& t : kTypes) {
+            const bool fits = written.empty() && standard && !is_thing(t.type) &&
+                              t.type != ParameterType::kBool && t.type != ParameterType::kSide &&
+                              t.type != ParameterType::kInt && t.dimension == standard->dimension;
+            if (written == t.name || (type == nullptr && fits)) {
+                type = &t;
+            }
+        }
+        if (type == nullptr) {
+            if (written.empty()) {
+                error("unknown-type", p.span, "nothing says what " + p.name.text + " is",
+                      "write its type or a default: `" + p.name.text + ": angle = 15 deg`");
+            } else {
+                unknown(p.type.span, "type", written, types);
+            }
+            continue;
+        }
+        if (standard && standard->dimension != type->dimension) {
+            wrong(p.default_value.span, lang::to_text(type->dimension), Term{*standard});
+            continue;
+        }
+        signature.parameters.push_back(
+            {.name = p.name.text,
+             .types = motion::TypeSet{}.with(type->type),
+             .default_text = standard ? lang::to_text(p.default_value) : "",
+             .default_value = standard ? standard->value : 0,
+             .doc = "a parameter of " + block.name.text});
+        add(p.name.text, type->type, type->dimension);
+    }
+    if (me.empty()) {
+        error("no-subject", block.name.span, "it does not say who moves",
+              "write `" + block.kind.text + " " + block.name.text + "(me: actor) { ... }`");
+    }
+    return me;
+}
+
+bool Elaboration::is_argument_movement(std::string_view name, std::uint32_t file) {
+    if (const auto* m = motion::find_movement(name, motion::SubjectKind::kActor)) {
+        return m->as_argument;
+    }
+    const OwnDefinition* own = own_movement(name, file);
+    return own != nullptr && own->movement != nullptr && own->movement->signature().as_argument;
+}
+
+std::vector<std::string> Elaboration::own_movement_names(std::uint32_t file) const {
+    std::vector<std::string> names;
+    for (const auto& [text, d] : library_.visible[file]) {
+        if (d.block != nullptr) {
+            names.push_back(text);
+        }
+    }
+    return names;
+}
+
+const OwnDefinition* Elaboration::own_movement(std::string_view name, std::uint32_t file) {
+    if (file >= library_.visible.size()) {
+        return nullptr;
+    }
+    const auto found = library_.visible[file].find(std::string(name));
+    if (found == library_.visible[file].end() || found->second.block == nullptr) {
+        return nullptr;
+    }
+    return &define_movement(*found->second.block);
+}
+
+const OwnDefinition& Elaboration::define_movement(const lang::Block& block) {
+    const auto known = own_movements_.find(key(block.span));
+    if (known != own_movements_.end()) {
+        return known->second;
+    }
+    About about(*this, block.kind.text + " " + block.name.text, block.span);
+    OwnDefinition made{.block = &block};
+    const bool taken = std::any_of(
+        motion::movement_library().begin(), motion::movement_library().end(),
+        [&](const motion::MovementSignature& m) { return m.name == block.name.text; });
+    if (taken) {
+        error("name-twice", block.name.span,
+              "the library has a movement " + block.name.text + " already",
+              "choose another name");
+    } else if (block.name.text.empty()) {
+        error("no-name", block.kind.span, "this movement has no name",
+              "write `" + block.kind.text + " NAME(me: actor) { ... }`");
+    } else {
+        made = FormulaBlock(*this, block).define();
+    }
+    const OwnDefinition& kept = own_movements_.emplace(key(block.span), std::move(made)).first->second;
+    if (kept.movement != nullptr && kept.humanoid) {
+        // Without arguments, where it needs none: so it is looked at even if nobody does it.
+        const auto& parameters = kept.movement->signature().parameters;
+        if (std::all_of(parameters.begin(), parameters.end(), [](const motion::Parameter& p) {
+                return !p.default_text.empty();
+            })) {
+            motion::BoundCall call{.movement = block.name.text, .own = kept.movement};
+            check_own_call(kept, call, block.name.span);
+        }
+    }
+    return kept;
+}
+
+// What can be wrong with one call: DOFs that the figure lacks, poles, values out of range.
+void Elaboration::check_own_call(const OwnDefinition& definition, const motion::BoundCall& call,
+                                 lang::Span where) {
+    const figure::DofSet* dofs = &mannequin_dofs();
+    std::string who = "a mannequin";
+    if (call.subject.actor.valid()) {
+        const stage::Actor& actor = scene.play.cast.actors[call.subject.actor.value];
+        who = actor.name;
+        if (!actor.humanoid()) {
+            dofs = &actor.character->dofs;
+        }
+    }
+    bool missing = false;
+    for (std::size_t i = 0; i < definition.dofs.size(); ++i) {
+        if (!dofs->find(definition.dofs[i]).valid()) {
+            std::vector<std::string> known;
+            for (const figure::Dof& d : dofs->dofs) {
+                known.push_back(d.name);
+            }
+            unknown(definition.dof_spans[i], "degree of freedom of " + who, definition.dofs[i],
+                    known);
+            missing = true;
+        }
+    }
+    const bool late = std::any_of(
+        call.arguments.begin(), call.arguments.end(), [](const motion::Argument& a) {
+            return std::holds_alternative<motion::TokenAttribute>(a.value);
+        });
+    if (missing || definition.formula == nullptr) {
+        return;
+    }
+    const motion::Arguments arguments(call, definition.movement->signature());
+    if (!late && !definition.formula->takes(arguments).good) {
+        error("out-of-range", where, definition.block->name.text + " would take no time, or too much",
+              "a movement takes between a millisecond and a day");
+        return;
+    }
+    if (late) {
+        return;
+    }
+    for (Diagnostic& d : definition.formula->check(arguments, *dofs)) {
+        const bool told = std::any_of(diagnostics.begin(), diagnostics.end(),
+                                      [&](const Diagnostic& known) {
+                                          return known.code == d.code && known.where == d.where;
+                                      });
+        if (d.where.file.empty()) {
+            d.where = at(where);
+        }
+        if (!told) {
+            diagnostics.push_back(std::move(d));
+        }
+    }
+}
+
+}  // namespace puppetri::scene
