@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Evaluating formulas, and finding their poles: a divisor that changes its sign between two samples,
-// or comes down to 0 in a dip, is followed to the instant where it is 0.
+// Evaluating formulas, and finding their poles: a divisor that changes its sign between two
+// samples, or comes down to 0 in a dip, is followed to the instant where it is 0.
 #include "puppetri/motion/formula_movement.h"
 
 #include <algorithm>
@@ -218,12 +218,12 @@ Diagnostics FormulaMaker::check(const Arguments& arguments, const figure::DofSet
         for (const FormulaDanger& danger : formula_->dangers) {
             const double at = pole_of(danger, evaluator, spec.duration_s);
             if (at >= 0) {
-                list.push_back({Severity::kError, "formula-pole", danger.where,
-                                "movement " + spec.name + ", " + danger.element + " at " +
-                                    told_seconds(at),
-                                "the formula has no value there: " + danger.what,
-                                "change the formula so that this cannot happen between 0 s and "
-                                "the end of the movement"});
+                list.push_back(
+                    {Severity::kError, "formula-pole", danger.where,
+                     "movement " + spec.name + ", " + danger.element + " at " + told_seconds(at),
+                     "the formula has no value there: " + danger.what,
+                     "change the formula so that this cannot happen between 0 s and "
+                     "the end of the movement"});
                 break;
             }
         }

@@ -31,7 +31,7 @@ constexpr int kMostDofsOfJoint = 6;
 
 // Reused by every posing movement of a thread; results never depend on what it holds.
 struct Scratch {
-    Pose own, solved;
+    Pose own, solved, joining;
     std::vector<double> dofs;
     std::vector<Quat> joints;
     std::vector<Vec3> paths;
@@ -74,8 +74,9 @@ class Posed final : public Movement {
         find_drives();
         const Transform pelvis{about_y(heading_of(start_.pelvis.rotation_world)),
                                start_.pelvis.position_world};
-        world_from_start_ = {pelvis.rotation, {pelvis.translation.x, floor_under(figure_, context),
-                                               pelvis.translation.z}};
+        world_from_start_ = {
+            pelvis.rotation,
+            {pelvis.translation.x, floor_under(figure_, context), pelvis.translation.z}};
         plan_contacts();
         join(context);
         tell_phases();
@@ -96,14 +97,25 @@ class Posed final : public Movement {
         Controls c = start_;
         own(t_s, c, s);
         solve_controls(figure_, c, s.solved);
+        // Arms are exactly as they are said to be, whatever breath and trunk do to the collar bone;
+        // a head may turn beyond that to what it looks at.
+        const bool joining = t_s < blend_s_;
+        if (joining) {
+            offset(t_s, c);
+            solve_controls(figure_, c, s.joining);
+        }
         for (const auto& [limb, joint] : overlay_joints_) {
             if (!which.has(limb)) {
                 continue;
             }
-            const Quat beyond = s.own.parent_from_joint[joint.value].rotation *
-                                conjugate(s.solved.parent_from_joint[joint.value].rotation);
+            const bool arm = limb == Limb::kLeftArm || limb == Limb::kRightArm;
+            const auto of = [&](const Pose& p) {
+                return p.parent_from_joint[joint.value].rotation;
+            };
             Quat& q = pose.parent_from_joint[joint.value].rotation;
-            q = figure::clamp_to_limit(figure_.limits[joint.value], normalized(beyond * q));
+            const Quat other = !arm ? q : joining ? of(s.joining) : of(s.solved);
+            q = figure::clamp_to_limit(figure_.limits[joint.value],
+                                       normalized(of(s.own) * conjugate(of(s.solved)) * other));
         }
     }
 
@@ -207,14 +219,15 @@ class Posed final : public Movement {
 
     void pose_joints(const PoseFrame& frame, Pose& pose) const {
         for (std::size_t i = 0; i < joints_.size(); ++i) {
-            pose.parent_from_joint[joints_[i].value].rotation = figure::clamp_to_limit(
-                figure_.limits[joints_[i].value], frame.joints[i]);
+            pose.parent_from_joint[joints_[i].value].rotation =
+                figure::clamp_to_limit(figure_.limits[joints_[i].value], frame.joints[i]);
         }
         for (const Drive& drive : drives_) {
             const std::span<const Dof> dofs(dofs_.dofs.data() + drive.range.first,
                                             drive.range.count);
             Transform& joint = pose.parent_from_joint[drive.joint.value];
-            const Transform& rest = figure_.skeleton.joints[drive.joint.value].parent_from_joint_rest;
+            const Transform& rest =
+                figure_.skeleton.joints[drive.joint.value].parent_from_joint_rest;
             std::array<double, kMostDofsOfJoint> values{};
             const bool hips = drive.joint == figure_.hips;
             const std::span<double> used(values.data(), dofs.size());
@@ -227,8 +240,7 @@ class Posed final : public Movement {
             }
             const Quat turned = figure::transform_of(dofs, rest, used).rotation;
             joint.rotation =
-                hips ? turned
-                     : figure::clamp_to_limit(figure_.limits[drive.joint.value], turned);
+                hips ? turned : figure::clamp_to_limit(figure_.limits[drive.joint.value], turned);
         }
     }
 
@@ -237,9 +249,8 @@ class Posed final : public Movement {
             const DrivenPath& path = spec_.paths[i];
             const Vec3 at = frame.paths[i];
             if (path.limb == Limb::kPelvis) {
-                const Vec3 way = path.space == PathSpace::kWorld
-                                     ? at
-                                     : rotate(world_from_start_.rotation, at);
+                const Vec3 way =
+                    path.space == PathSpace::kWorld ? at : rotate(world_from_start_.rotation, at);
                 c.pelvis.position_world = c.pelvis.position_world + way;
             } else if (path.limb == Limb::kLeftLeg || path.limb == Limb::kRightLeg) {
                 const std::size_t side = path.limb == Limb::kLeftLeg ? 0 : 1;
@@ -263,11 +274,10 @@ class Posed final : public Movement {
         const Side side = path.limb == Limb::kLeftArm ? Side::kLeft : Side::kRight;
         ArmControl& arm = c.arms[index_of(side)];
         const figure::Arm& joints = figure_.arms[index_of(side)];
-        Vec3 chest = at;
-        if (path.space != PathSpace::kChest) {
-            const Vec3 world = path.space == PathSpace::kWorld ? at : world_from_start_ * at;
-            chest = inverse(world_from_chest(figure_, c)) * world;
-        }
+        const Transform world_from_chest_now = world_from_chest(figure_, c);
+        const bool fixed = path.space != PathSpace::kChest;
+        const Vec3 world = path.space == PathSpace::kWorld ? at : world_from_start_ * at;
+        const Vec3 chest = fixed ? inverse(world_from_chest_now) * world : at;
         const Quat wrist =
             posed_.has(path.limb) ? pose.parent_from_joint[joints.hand.value].rotation : Quat{};
         arm.chest_from_hand.translation = chest;
@@ -276,6 +286,11 @@ class Posed final : public Movement {
         solve_controls(figure_, c, solved);
         solved.parent_from_joint[joints.hand.value].rotation = wrist;
         controls_from_pose(figure_, solved, limb_set(path.limb), c);
+        if (fixed) {  // whatever the trunk of somebody else's movement does
+            arm.world_from_hand = {world_from_chest_now.rotation * arm.chest_from_hand.rotation,
+                                   world};
+            arm.world_weight = 1;
+        }
         for (const JointIndex joint : joints_of_arm_[index_of(side)]) {
             pose.parent_from_joint[joint.value] = solved.parent_from_joint[joint.value];
         }
@@ -343,6 +358,7 @@ class Posed final : public Movement {
         own(kMoment, later, scratch());
         const ControlsRate rate = rate_between(first, later, kMoment);
         const double blend = std::fmin(spec_.settle_s, std::fmax(0.1, duration.seconds()));
+        blend_s_ = blend;
         join_ = InertialFigure(context, first, later, blend);
         pelvis_ = {context.now.pelvis.position_world - first.pelvis.position_world,
                    context.rate.pelvis_velocity_world - rate.pelvis_velocity_world, blend};
@@ -391,10 +407,9 @@ class Posed final : public Movement {
                     own_contacts.push_back(c);
                 }
             }
-            std::sort(own_contacts.begin(), own_contacts.end(),
-                      [](const FootContact& a, const FootContact& b) {
-                          return a.begin_s < b.begin_s;
-                      });
+            std::sort(
+                own_contacts.begin(), own_contacts.end(),
+                [](const FootContact& a, const FootContact& b) { return a.begin_s < b.begin_s; });
             for (const FootContact& c : own_contacts) {
                 if (c.begin_s > until) {
                     phases.push_back(
@@ -422,7 +437,8 @@ class Posed final : public Movement {
     PosedSpec spec_;
     std::shared_ptr<const PoseSource> source_;
     MovementPtr base_;
-    double pace_ = 1;  // seconds of the source per second
+    double pace_ = 1;     // seconds of the source per second
+    double blend_s_ = 0;  // over which the state that was found fades
     Controls start_;
     Transform world_from_start_;
     DofSet dofs_;
@@ -494,7 +510,10 @@ Diagnostics check_posed(const DofSet& dofs, const PosedSpec& spec, const PoseSou
         return "movement " + spec.name + ", " + what + " at " + told_seconds(t_s);
     };
     const auto no_number = [&](const std::string& what, double t_s) {
-        list.push_back({Severity::kError, "not-a-number", {}, element(what, t_s),
+        list.push_back({Severity::kError,
+                        "not-a-number",
+                        {},
+                        element(what, t_s),
                         "it has no value there",
                         "look at divisions, roots and logarithms in its formula"});
     };
@@ -519,9 +538,13 @@ Diagnostics check_posed(const DofSet& dofs, const PosedSpec& spec, const PoseSou
                 const auto whole = [&](double x) {
                     return std::to_string(static_cast<long long>(std::nearbyint(x * shown)));
                 };
-                list.push_back({Severity::kWarning, "out-of-range", {}, element(dof.name, t),
-                                "it would be " + whole(values[i]) + unit + ", and the joint goes from " +
-                                    whole(dof.lo) + " to " + whole(dof.hi) + unit,
+                list.push_back({Severity::kWarning,
+                                "out-of-range",
+                                {},
+                                element(dof.name, t),
+                                "it would be " + whole(values[i]) + unit +
+                                    ", and the joint goes from " + whole(dof.lo) + " to " +
+                                    whole(dof.hi) + unit,
                                 "keep it within the range; it is stopped there"});
             }
         }

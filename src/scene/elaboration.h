@@ -56,10 +56,10 @@ struct OwnDefinition {
     const lang::Block* block = nullptr;
     motion::OwnMovementPtr movement = {};
     std::shared_ptr<const motion::FormulaMaker> formula = {};  // of a movement by formula
-    bool humanoid = true;                    // its DOFs are those of humanoids
-    std::vector<std::string> dofs = {};      // that it drives, and where it says so
+    bool humanoid = true;                                      // its DOFs are those of humanoids
+    std::vector<std::string> dofs = {};  // that it drives, and where it says so
     std::vector<lang::Span> dof_spans = {};
-    std::vector<std::string> events = {};    // that it raises
+    std::vector<std::string> events = {};  // that it raises
 
     // Fills what it drives: limbs, and whether it may be an argument.
     void limbs_of_definition(motion::OwnSignature& signature, const motion::PosedSpec& spec);

@@ -25,9 +25,7 @@ lang::Dimension times(lang::Dimension a, lang::Dimension b, int sign) {
 }
 
 bool is_zero(const Expr& e) { return e.is_literal() && real_of_value(e.literal_value()) == 0; }
-bool is_real_literal(const Expr& e) {
-    return e.is_literal() && e.type().kind == ValueKind::kReal;
-}
+bool is_real_literal(const Expr& e) { return e.is_literal() && e.type().kind == ValueKind::kReal; }
 
 ExprOp comparison_of(Op op) {
     switch (op) {
@@ -354,7 +352,8 @@ std::optional<Formula> FormulaCompiler::power(const lang::Expr& e, Formula a,
         return std::nullopt;
     }
     if (literal && n < 0) {
-        danger(a.value, false, e, "it divides by a power of `" + lang::to_text(e.args[0].value) + "`");
+        danger(a.value, false, e,
+               "it divides by a power of `" + lang::to_text(e.args[0].value) + "`");
     }
     if (!whole) {
         danger(a.value, true, e, "a negative number has no such power");
@@ -429,8 +428,7 @@ std::optional<Formula> FormulaCompiler::conditional(const lang::Expr& e) {
 }
 
 std::optional<Formula> FormulaCompiler::call(const lang::Expr& e) {
-    const Function* f =
-        e.path.steps.size() == 1 ? find_function(e.path.steps[0].text) : nullptr;
+    const Function* f = e.path.steps.size() == 1 ? find_function(e.path.steps[0].text) : nullptr;
     if (f == nullptr) {
         std::vector<std::string> known;
         for (const Function& g : functions()) {
@@ -498,7 +496,8 @@ std::optional<Formula> FormulaCompiler::call(const lang::Expr& e) {
         }
         case ExprOp::kLog:
             danger(args[0].value, false, first, "the logarithm of 0, `" + text + "`");
-            danger(args[0].value, true, first, "the logarithm of a negative number, `" + text + "`");
+            danger(args[0].value, true, first,
+                   "the logarithm of a negative number, `" + text + "`");
             break;
         case ExprOp::kTan: {
             if (auto cosine = apply(ExprOp::kCos, {args[0].value}, e)) {
@@ -580,8 +579,7 @@ std::optional<Formula3> FormulaCompiler::point(const lang::Expr& e) {
             lang::Expr product = e.args[k].value;
             product.op = Op::kMultiply;
             product.kind = ExprKind::kBinary;
-            return fold(product, std::move(*value), e,
-                        Formula{Expr::real(u->value), u->dimension});
+            return fold(product, std::move(*value), e, Formula{Expr::real(u->value), u->dimension});
         });
     }
     if (e.kind == ExprKind::kPath && is_point(e)) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Calls inside expressions: functions of numbers, folded where their arguments are constant, and
 // movements as values.
+#include "functions.h"
+
 #include <cmath>
 
 #include "elaboration.h"
-#include "functions.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/lang/units.h"
 
@@ -66,6 +67,14 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
         }
         if (is_argument_movement(name, e.span.file)) {
             return movement_value(e, e.path, scope);
+        }
+        if (const OwnDefinition* own = own_movement(name, e.span.file)) {
+            if (own->movement != nullptr) {
+                error("wrong-type", e.path.span,
+                      name + " moves more than arms and cannot be an argument",
+                      "arguments are movements of arms alone");
+            }
+            return Nothing{};
         }
         for (const motion::MovementSignature& m : motion::movement_library()) {
             if (m.name == name) {
@@ -156,8 +165,7 @@ Term Elaboration::call_function(const lang::Expr& e, const Function& f, const Sc
             return Number::whole(static_cast<std::int64_t>(value));
         }
     }
-    return from_double(value,
-                       gives_angle(f.op) ? lang::dimension::kAngle : lang::dimension::kNone);
+    return from_double(value, gives_angle(f.op) ? lang::dimension::kAngle : lang::dimension::kNone);
 }
 
 }  // namespace puppetri::scene

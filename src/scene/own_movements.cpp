@@ -78,11 +78,11 @@ class FormulaBlock {
 
     OwnDefinition define() {
         const std::size_t before = e_.diagnostics.size();
-        me_ = e_.read_own_parameters(block_, signature_, [this](const std::string& name,
-                                                                ParameterType type,
-                                                                lang::Dimension dimension) {
-            is_thing(type) ? compiler_.add_thing(name) : compiler_.add_number(name, dimension);
-        });
+        me_ = e_.read_own_parameters(
+            block_, signature_,
+            [this](const std::string& name, ParameterType type, lang::Dimension dimension) {
+                is_thing(type) ? compiler_.add_thing(name) : compiler_.add_number(name, dimension);
+            });
         for (const lang::Property& p : block_.properties) {
             read(p);
         }
@@ -131,8 +131,8 @@ class FormulaBlock {
         } else if (steps[0].text == "takes") {
             if (p.values.size() == 1) {
                 compiler_.about("takes");
-                formula_.takes = compiler_.program(p.values[0], lang::dimension::kTime)
-                                     .value_or(formula_.takes);
+                formula_.takes =
+                    compiler_.program(p.values[0], lang::dimension::kTime).value_or(formula_.takes);
             } else {
                 form(p, "takes 1 s");
             }
@@ -158,8 +158,8 @@ class FormulaBlock {
             form(p, "at 0.5 s raises clap");
             return;
         }
-        const auto at = e_.constant_number(p.values[0], {}, lang::dimension::kTime,
-                                           "the time of an event");
+        const auto at =
+            e_.constant_number(p.values[0], {}, lang::dimension::kTime, "the time of an event");
         if (at && at->value < 0) {
             e_.error("negative-time", p.values[0].span, "a movement begins at 0 s",
                      "write a later time");
@@ -203,8 +203,7 @@ class FormulaBlock {
         }
         const figure::DofIndex known = mannequin_dofs().find(name);
         const bool slides =
-            known.valid() &&
-            mannequin_dofs().dofs[known.value].kind == figure::DofKind::kSlide;
+            known.valid() && mannequin_dofs().dofs[known.value].kind == figure::DofKind::kSlide;
         // DOFs of other figures: what the formula gives says whether they turn or slide.
         std::optional<ProgramIndex> program;
         if (known.valid()) {
@@ -285,11 +284,9 @@ void OwnDefinition::limbs_of_definition(motion::OwnSignature& signature,
     humanoid = std::all_of(spec.dofs.begin(), spec.dofs.end(), [](const std::string& name) {
         return mannequin_dofs().find(name).valid();
     });
-    signature.limbs =
-        humanoid ? motion::limbs_of(figure, spec) : motion::LimbSet{};
+    signature.limbs = humanoid ? motion::limbs_of(figure, spec) : motion::LimbSet{};
     signature.as_argument =
-        signature.limbs.bits != 0 &&
-        motion::without(signature.limbs, motion::kBothArms).bits == 0;
+        signature.limbs.bits != 0 && motion::without(signature.limbs, motion::kBothArms).bits == 0;
 }
 
 std::string Elaboration::read_own_parameters(
@@ -404,26 +401,25 @@ const OwnDefinition& Elaboration::define_movement(const lang::Block& block) {
     }
     About about(*this, block.kind.text + " " + block.name.text, block.span);
     OwnDefinition made{.block = &block};
-    const bool taken = std::any_of(
-        motion::movement_library().begin(), motion::movement_library().end(),
-        [&](const motion::MovementSignature& m) { return m.name == block.name.text; });
+    const bool taken =
+        std::any_of(motion::movement_library().begin(), motion::movement_library().end(),
+                    [&](const motion::MovementSignature& m) { return m.name == block.name.text; });
     if (taken) {
         error("name-twice", block.name.span,
-              "the library has a movement " + block.name.text + " already",
-              "choose another name");
+              "the library has a movement " + block.name.text + " already", "choose another name");
     } else if (block.name.text.empty()) {
         error("no-name", block.kind.span, "this movement has no name",
               "write `" + block.kind.text + " NAME(me: actor) { ... }`");
     } else {
         made = FormulaBlock(*this, block).define();
     }
-    const OwnDefinition& kept = own_movements_.emplace(key(block.span), std::move(made)).first->second;
+    const OwnDefinition& kept =
+        own_movements_.emplace(key(block.span), std::move(made)).first->second;
     if (kept.movement != nullptr && kept.humanoid) {
         // Without arguments, where it needs none: so it is looked at even if nobody does it.
         const auto& parameters = kept.movement->signature().parameters;
-        if (std::all_of(parameters.begin(), parameters.end(), [](const motion::Parameter& p) {
-                return !p.default_text.empty();
-            })) {
+        if (std::all_of(parameters.begin(), parameters.end(),
+                        [](const motion::Parameter& p) { return !p.default_text.empty(); })) {
             motion::BoundCall call{.movement = block.name.text, .own = kept.movement};
             check_own_call(kept, call, block.name.span);
         }
@@ -455,8 +451,8 @@ void Elaboration::check_own_call(const OwnDefinition& definition, const motion::
             missing = true;
         }
     }
-    const bool late = std::any_of(
-        call.arguments.begin(), call.arguments.end(), [](const motion::Argument& a) {
+    const bool late =
+        std::any_of(call.arguments.begin(), call.arguments.end(), [](const motion::Argument& a) {
             return std::holds_alternative<motion::TokenAttribute>(a.value);
         });
     if (missing || definition.formula == nullptr) {
@@ -464,7 +460,8 @@ void Elaboration::check_own_call(const OwnDefinition& definition, const motion::
     }
     const motion::Arguments arguments(call, definition.movement->signature());
     if (!late && !definition.formula->takes(arguments).good) {
-        error("out-of-range", where, definition.block->name.text + " would take no time, or too much",
+        error("out-of-range", where,
+              definition.block->name.text + " would take no time, or too much",
               "a movement takes between a millisecond and a day");
         return;
     }
@@ -472,10 +469,10 @@ void Elaboration::check_own_call(const OwnDefinition& definition, const motion::
         return;
     }
     for (Diagnostic& d : definition.formula->check(arguments, *dofs)) {
-        const bool told = std::any_of(diagnostics.begin(), diagnostics.end(),
-                                      [&](const Diagnostic& known) {
-                                          return known.code == d.code && known.where == d.where;
-                                      });
+        const bool told =
+            std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Diagnostic& known) {
+                return known.code == d.code && known.where == d.where;
+            });
         if (d.where.file.empty()) {
             d.where = at(where);
         }

@@ -26,7 +26,7 @@ using motion::LimbSet;
 using motion::MotionContext;
 using motion::MovementPtr;
 
-inline constexpr SimTime kMoment{kTicksPerSecond / 10'000};  // over which rates are taken
+inline constexpr SimTime kMoment{kTicksPerSecond / 10'000};     // over which rates are taken
 inline constexpr SimTime kJointFade{kTicksPerSecond * 3 / 10};  // of what joints do beyond controls
 
 // One performance of an action.

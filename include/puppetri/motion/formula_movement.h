@@ -43,8 +43,8 @@ struct FormulaMovement {
     Code code;
     ProgramIndex takes;
     std::vector<FormulaInput> inputs;
-    std::vector<ProgramIndex> locals;  // each may read those before it
-    std::vector<ProgramIndex> dofs;    // of spec.dofs
+    std::vector<ProgramIndex> locals;                // each may read those before it
+    std::vector<ProgramIndex> dofs;                  // of spec.dofs
     std::vector<std::array<ProgramIndex, 3>> paths;  // of spec.paths
     std::vector<FormulaDanger> dangers;
     std::vector<SourceSpan> dof_where, path_where;

@@ -50,10 +50,9 @@ class Movement {
     virtual void sample(double t_s, Controls& out) const = 0;
 
     // Changes the joints of `which`, a part of `overlays`, and no others, at t seconds after the
-    // start: what controls cannot say. The pose it gets is what the sampled controls were solved into (of a figure
-    // without controls: the rest pose), so that what the movement does to a joint goes on top of
-    // whatever else is done to the controls.
-    // Cost: no allocation.
+    // start: what controls cannot say. The pose it gets is what the sampled controls were solved
+    // into (of a figure without controls: the rest pose), so that what the movement does to a joint
+    // goes on top of whatever else is done to the controls. Cost: no allocation.
     virtual void overlay(double t_s, LimbSet which, figure::Pose& pose) const;
 };
 

@@ -39,10 +39,10 @@ struct FootContact {
 // What a source drives. Times are the source's own: a place that prescribes a duration plays it
 // faster or slower.
 struct PosedSpec {
-    std::string name;               // of the movement, for warnings
+    std::string name;  // of the movement, for warnings
     double duration_s = 1;
-    bool loops = false;             // goes on beyond the duration instead of resting at its end
-    std::vector<std::string> dofs;  // "head.flex": names of the figure's DOFs
+    bool loops = false;               // goes on beyond the duration instead of resting at its end
+    std::vector<std::string> dofs;    // "head.flex": names of the figure's DOFs
     std::vector<std::string> joints;  // whole rotations of joints, by name in the skeleton
     std::vector<DrivenPath> paths;
     bool travels = false;  // `joints` has a travel of the root, see PoseFrame
@@ -59,10 +59,10 @@ struct PosedSpec {
 // Numbers of one instant, in the order of the spec. Joints' rotations are parent_from_joint of the
 // normalised figure.
 struct PoseFrame {
-    std::span<double> dofs;   // radians or metres
+    std::span<double> dofs;  // radians or metres
     std::span<Quat> joints;
-    std::span<Vec3> paths;    // metres; of a hand the wrist, of a foot the sole below the ankle, of
-                              // the pelvis its way from where it stands
+    std::span<Vec3> paths;  // metres; of a hand the wrist, of a foot the sole below the ankle, of
+                            // the pelvis its way from where it stands
     Transform start_from_pelvis;  // where spec.travels: the hips in start space
 };
 

@@ -1,0 +1,2 @@
+# The measuring instrument, shared with other modules' tests.
+target_sources(test_scene PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp")

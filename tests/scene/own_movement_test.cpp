@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+// Movements by formula: what they do, that they join, and what is said of wrong ones.
+#include <doctest/doctest.h>
+
+#include "measured.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/figure/dof.h"
+#include "puppetri/math/rotation.h"
+
+using namespace puppetri;
+using namespace puppetri::scene;
+
+namespace {
+
+// Ana stands a second, does it, and stands again.
+std::string play(const std::string& movements, const std::string& call) {
+    return movements + "\nplace a does ana.idle(lasting: 1 s) tokens 1\nplace b does ana." + call +
+           "\nplace c does ana.idle(lasting: 1 s)\nab: a -> b\nbc: b -> c\nend { c }\n";
+}
+Scene one(const std::string& movements, const std::string& call, bool ball = false) {
+    MemoryFiles files;
+    files.add("scene.pup",
+              "language 1\nscene \"one\"\nuntil 5 s\ncast {\n ana: mannequin\n rui: "
+              "mannequin { at (1, 0, 0.5) m, facing -90 deg }\n ball: sphere { at "
+              "(0.3, 1, 0.4) m }\n}\n" +
+                  play(movements, call));
+    (void)ball;
+    return must(load(files, "scene.pup"));
+}
+Diagnostics defects(const std::string& movements, const std::string& call) {
+    MemoryFiles files;
+    files.add("scene.pup",
+              "language 1\nscene \"one\"\nuntil 5 s\ncast {\n ana: mannequin\n ball: sphere\n}\n" +
+                  play(movements, call));
+    return check(files, "scene.pup");
+}
+void refuses(const std::string& movements, const char* code, const std::string& element = "",
+             const std::string& call = "m()") {
+    const Diagnostics list = defects(movements, call);
+    bool found = false;
+    for (const Diagnostic& d : list) {
+        found = found || (d.code == code && d.severity == Severity::kError && d.where.line > 0 &&
+                          !d.remedy.empty() &&
+                          (element.empty() || d.element.find(element) != std::string::npos));
+    }
+    CHECK_MESSAGE(found, movements << " gives " << told(list));
+}
+
+double dof_value(const stage::Performance& p, const char* name, double t_s) {
+    static const figure::Figure figure = figure::make_mannequin(1.75);
+    static const figure::DofSet dofs = figure::humanoid_dofs(figure);
+    figure::Pose pose;
+    p.pose({0}, SimTime{static_cast<std::int64_t>(t_s * kTicksPerSecond)}, pose);
+    const figure::DofIndex dof = dofs.find(name);
+    REQUIRE(dof.valid());
+    const auto joint = dofs.dofs[dof.value].joint;
+    const auto range = dofs.of_joint(joint);
+    std::vector<double> values(range.count);
+    figure::values_of({dofs.dofs.data() + range.first, range.count},
+                      figure.skeleton.joints[joint.value].parent_from_joint_rest,
+                      pose.parent_from_joint[joint.value], values);
+    return values[dof.value - range.first];
+}
+
+Vec3 joint_at(const stage::Performance& p, const char* name, double t_s) {
+    figure::Pose pose;
+    p.pose({0}, SimTime{static_cast<std::int64_t>(t_s * kTicksPerSecond)}, pose);
+    const figure::Skeleton& skeleton = *p.actors()[0].skeleton;
+    std::vector<Transform> world(skeleton.joints.size());
+    to_model_space(skeleton, pose, world);
+    return world[skeleton.find(name).value].translation;
+}
+
+const char* const kNod =
+    "movement m(me: actor, deep = 15 deg) { takes 2 s; me.head.flex = deep * sin(2*pi*t/1 s) }";
+
+}  // namespace
+
+TEST_CASE("a movement by formula poses its degree of freedom as the formula says [unit]") {
+    const Scene scene = one(kNod, "m()");
+    const Performed p = performed(scene);
+    CHECK(p.performance->score()[1].end - p.performance->score()[1].start ==
+          SimTime{2 * kTicksPerSecond});
+    // Once the state that it found has faded.
+    for (double t = 0.5; t < 1.95; t += 0.05) {
+        CHECK(dof_value(*p.performance, "head.flex", 1 + t) ==
+              doctest::Approx(radians(15) * puppetri::sin(2 * kPi * t)).epsilon(1e-6));
+    }
+    check_good(measured(p, scene), "nod");
+}
+
+TEST_CASE("arguments of a movement by formula have defaults, names, units and types [unit]") {
+    const Scene scene = one(kNod, "m(deep: 20 deg)");
+    const Performed p = performed(scene);
+    CHECK(dof_value(*p.performance, "head.flex", 2.25) ==
+          doctest::Approx(radians(20)).epsilon(1e-6));
+    refuses(kNod, "wrong-unit", "", "m(deep: 2 s)");
+    refuses(kNod, "unknown-name", "", "m(depth: 20 deg)");
+    refuses(kNod, "too-many-arguments", "", "m(20 deg, 1)");
+    refuses(kNod, "unknown-name", "", "mm()");
+}
+
+TEST_CASE("a place that prescribes a duration plays the whole formula in it [unit]") {
+    MemoryFiles files;
+    files.add("scene.pup",
+              std::string("language 1\nscene \"s\"\nuntil 6 s\ncast { ana: mannequin }\n") + kNod +
+                  "\nplace a does ana.m() takes 4 s tokens 1\nend { a }\n");
+    const Scene scene = must(load(files, "scene.pup"));
+    const Performed p = performed(scene);
+    CHECK(dof_value(*p.performance, "head.flex", 2.5) ==
+          doctest::Approx(radians(15) * puppetri::sin(2 * kPi * 1.25)).epsilon(1e-6));
+}
+
+TEST_CASE("many joints, locals and conditions in one formula, joined without a jump [law]") {
+    const Scene scene = one(R"(movement m(me: actor, up = 70 deg) {
+  takes 2 s
+  ramp = t < 0.6 s ? t / 0.6 s : t > 1.4 s ? (2 s - t) / 0.6 s : 1
+  soft = ramp^3 * (10 - ramp*(15 - 6*ramp))
+  me.right_shoulder.side = up * soft
+  me.right_elbow.flex = 100 deg * soft + 15 deg * sin(12*t/1 s) * soft
+  me.spine.side = 6 deg * soft
+  me.head.twist = -20 deg * soft
+})",
+                            "m()");
+    const Performed p = performed(scene);
+    CHECK(dof_value(*p.performance, "right_shoulder.side", 2) ==
+          doctest::Approx(radians(70)).epsilon(1e-6));
+    CHECK(dof_value(*p.performance, "right_elbow.flex", 2) ==
+          doctest::Approx(radians(100 + 15 * puppetri::sin(12.0))).epsilon(1e-6));
+    check_good(measured(p, scene), "salute");
+}
+
+TEST_CASE("a hand goes along its path before the chest and in the world [oracle]") {
+    const Scene chest = one(R"(movement m(me: actor, radius = 0.1 m) {
+  takes 2 s
+  a = 2*pi*t / 2 s
+  me.left_hand.position = (0.25 m + radius*cos(a), 0.1 m + radius*sin(a), 0.35 m) in chest
+})",
+                            "m(radius: 8 cm)");
+    const Performed p = performed(chest);
+    for (double t = 0.5; t < 2; t += 0.1) {
+        figure::Pose pose;
+        p.performance->pose({0}, SimTime{static_cast<std::int64_t>((1 + t) * kTicksPerSecond)},
+                            pose);
+        const figure::Skeleton& skeleton = *p.performance->actors()[0].skeleton;
+        std::vector<Transform> world(skeleton.joints.size());
+        to_model_space(skeleton, pose, world);
+        const Vec3 hand = inverse(world[skeleton.find("upperChest").value]) *
+                          world[skeleton.find("leftHand").value].translation;
+        const double a = kPi * t;
+        CHECK(length(hand - Vec3{0.25 + 0.08 * puppetri::cos(a), 0.1 + 0.08 * puppetri::sin(a),
+                                 0.35}) < 1e-6);
+    }
+    check_good(measured(p, chest), "circle");
+
+    const Scene world = one(R"(movement m(me: actor, what: prop) {
+  takes 2 s
+  me.left_hand.position = what.position + (0, 0.15, 0) m in world
+})",
+                            "m(ball)");
+    const Performed q = performed(world);
+    CHECK(length(joint_at(*q.performance, "leftHand", 2) - Vec3{0.3, 1.15, 0.4}) < 1e-6);
+    check_good(measured(q, world), "over the ball");
+}
+
+TEST_CASE(
+    "a pelvis that a formula moves leaves the feet planted; a foot goes where it says [law]") {
+    const Scene squat = one(R"(movement m(me: actor) {
+  takes 2 s
+  me.pelvis.position = (0, -0.15, 0.02) m * sin(pi*t/2 s)^2
+  me.hips.flex = 12 deg * sin(pi*t/2 s)^2
+})",
+                            "m()");
+    const Performed p = performed(squat);
+    check_good(measured(p, squat), "squat");
+    CHECK(joint_at(*p.performance, "hips", 1).y - joint_at(*p.performance, "hips", 2).y > 0.12);
+
+    const Scene tap = one(R"(movement m(me: actor) {
+  takes 1 s
+  up = sin(pi*t/1 s)^2
+  me.right_foot.position = (-0.09, 0, 0.02) m + up*(0, 0.15, 0.1) m in start
+})",
+                          "m()");
+    const Performed q = performed(tap);
+    CHECK(joint_at(*q.performance, "rightFoot", 1.5).y > 0.2);
+}
+
+TEST_CASE("an event at a time inside a movement reaches the net at that time [unit]") {
+    MemoryFiles files;
+    files.add("scene.pup", R"(language 1
+scene "clap"
+until 3 s
+cast { ana: mannequin }
+movement clap(me: actor) {
+  takes 1 s
+  me.left_elbow.flex = 80 deg
+  at 0.25 s raises clapped
+}
+place a does ana.clap() tokens 1
+place waits tokens 1
+place heard
+hear: waits -> heard on a.clapped
+end { a and heard }
+)");
+    const Scene scene = must(load(files, "scene.pup"));
+    const Performed p = performed(scene);
+    CHECK(p.firings == 1);
+    bool found = false;
+    for (const stage::StageEvent& e : p.performance->events()) {
+        found = found || (e.name == "clapped" && e.at == SimTime{kTicksPerSecond / 4});
+    }
+    CHECK(found);
+}
+
+TEST_CASE("a formula of the arms alone may stand as an argument of others [unit]") {
+    const Scene scene = one(R"(movement wings(me: actor) {
+  takes 2 s
+  me.left_shoulder.side = 60 deg
+  me.right_shoulder.side = 60 deg
+})",
+                            "walk(steps: 2, arms: wings())");
+    const Performed p = performed(scene);
+    CHECK(dof_value(*p.performance, "left_shoulder.side", 1.6) ==
+          doctest::Approx(radians(60)).epsilon(1e-6));
+    check_good(measured(p, scene), "walk with wings");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = 1 deg }", "wrong-type", "",
+            "walk(arms: m())");
+}
+
+TEST_CASE("movements are imported like nets, and looked at where nobody does them [unit]") {
+    MemoryFiles files;
+    files.add("other.pup", std::string(kNod) + "\nnet n { place p }\n");
+    files.add("scene.pup",
+              "language 1\nscene \"s\"\nuntil 3 s\nimport m from \"other.pup\"\n"
+              "cast { ana: mannequin }\nplace a does ana.m() tokens 1\nend { a }\n");
+    must(load(files, "scene.pup"));
+    MemoryFiles unused;
+    unused.add("scene.pup",
+               "language 1\nscene \"s\"\nuntil 3 s\ncast { ana: mannequin }\n"
+               "movement m(me: actor) { takes 1 s; me.head.flex = 1 deg / (t - t) }\n"
+               "place a does ana.idle() tokens 1\nend { a }\n");
+    CHECK(!load(unused, "scene.pup"));
+}
+
+TEST_CASE("a pole is told with movement, degree of freedom and time, wherever it lies [hostile]") {
+    const auto pole = [](const char* formula, const char* at) {
+        const std::string m =
+            std::string("movement m(me: actor) { takes 1 s; me.head.flex = ") + formula + " }";
+        refuses(m, "formula-pole", std::string("movement m, head.flex at ") + at);
+    };
+    pole("1 deg * 0.01 s / (t - 0.5 s)", "0.500 s");
+    pole("1 deg * 1e-3 s / (t - 0.33337 s)", "0.333 s");      // between two samples
+    pole("1e-9 deg * 1 s^2 / (t - 0.70001 s)^2", "0.700 s");  // without a change of sign
+    pole("0.1 deg * tan(3 * t / 1 s)", "0.524 s");            // pi / 6
+    pole("1 deg * log(t / 1 s)", "0.000 s");
+    pole("1 deg * sqrt(0.5 - t / 1 s)", "0.501 s");  // the first sample beyond
+    pole("1 deg * (0.25 - t / 1 s)^0.5", "0.252 s");
+    pole("1 deg / (1 - cos(2*pi*t/1 s))", "0.000 s");
+    // No poles: guarded, or never zero, or lifted.
+    const auto fine = [](const char* formula) {
+        const std::string m =
+            std::string("movement m(me: actor) { takes 1 s; me.head.flex = ") + formula + " }";
+        const Diagnostics list = defects(m, "m()");
+        CHECK_MESSAGE(!has_errors(list), formula << told(list));
+    };
+    fine("t > 0.1 s ? 1 deg * 0.01 s / t : 0");
+    fine("1 deg / (1 + (t / 1 s)^2)");
+    fine("5 deg * (t = 0 s ? 1 : sin(40*t/1 s) / (40*t/1 s))");
+    fine("1 deg * sqrt(t / 1 s)");
+    // Only for arguments that make it one.
+    const char* const m =
+        "movement m(me: actor, when: time) { takes 1 s; me.head.flex = 0.01 deg * 1 s / (t - when) "
+        "}";
+    refuses(m, "formula-pole", "at 0.250 s", "m(0.25 s)");
+    CHECK(!has_errors(defects(m, "m(2 s)")));
+}
+
+TEST_CASE("wrong movements are told with place and remedy [hostile]") {
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = 1 s }", "wrong-unit");
+    refuses("movement m(me: actor) { takes 1 deg; me.head.flex = 1 deg }", "wrong-unit");
+    refuses("movement m(me: actor) { takes 0 s; me.head.flex = 1 deg }", "out-of-range");
+    refuses("movement m(me: actor) { me.head.flex = 1 deg }", "no-duration");
+    refuses("movement m(me: actor) { takes 1 s }", "nothing-moves");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flexx = 1 deg }", "unknown-name");
+    refuses("movement m(me: actor) { takes 1 s; you.head.flex = 1 deg }", "wrong-subject");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = 1 deg + 1 s }", "wrong-unit");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = sine(t) * 1 deg }", "unknown-name");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = sin(t) * 1 deg }", "wrong-unit");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = x * 1 deg }", "unknown-name");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = 1 deg / 0 }", "division-by-zero");
+    refuses("movement m(me: actor) { takes 1 s; me.head.flex = 1 deg\n me.head.flex = 2 deg }",
+            "name-twice");
+    refuses("movement m(me: actor) { takes 1 s; me.left_hand.position = (1, 2, 3) s }",
+            "wrong-unit");
+    refuses("movement m(me: actor) { takes 1 s; me.left_hand.position = (1, 2) m }", "wrong-type");
+    refuses("movement m(me: actor) { takes 1 s; me.left_hand.position = (0, 0, 0) m in moon }",
+            "unknown-name");
+    refuses("movement m { takes 1 s }", "no-subject");
+    refuses("movement m(x: time) { takes 1 s }", "wrong-type");
+    refuses("movement walk(me: actor) { takes 1 s; me.head.flex = 1 deg }", "name-twice", "",
+            "walk()");
+    refuses("movement m(me: actor, b: thing) { takes 1 s; me.head.flex = 1 deg }", "unknown-name");
+    const Diagnostics out =
+        defects("movement m(me: actor) { takes 1 s; me.left_elbow.flex = 200 deg }", "m()");
+    CHECK(!has_errors(out));
+    CHECK(std::any_of(out.begin(), out.end(),
+                      [](const Diagnostic& d) { return d.code == "out-of-range"; }));
+}
