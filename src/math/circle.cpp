@@ -7,6 +7,7 @@
 #include "puppetri/math/circle.h"
 
 #include <array>
+#include <bit>
 
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
@@ -18,13 +19,6 @@ constexpr double kTau = 0.41421356237309504880;  // tan(pi/8)
 
 using Quartic = std::array<double, 5>;    // by ascending power of t / kTau
 using Bernstein = std::array<double, 5>;  // over t / kTau in the interval at hand
-
-double value(const Quartic& a, double s) {
-    return a[0] + s * (a[1] + s * (a[2] + s * (a[3] + s * a[4])));
-}
-double slope(const Quartic& a, double s) {
-    return a[1] + s * (2 * a[2] + s * (3 * a[3] + s * (4 * a[4])));
-}
 
 // f(y) (1 + t^2)^2 with t = kTau s.
 Quartic quartic_of(const TrigPolynomial& f) {
@@ -39,44 +33,57 @@ Bernstein bernstein_of(const Quartic& a) {
     return {even0 - odd0, even1 - odd1, even2, even1 + odd1, even0 + odd0};
 }
 
+// How often the signs of the coefficients change; without branches, which nobody could predict.
 int variations(const Bernstein& b) {
-    int count = 0;
-    for (int i = 0; i < 4; ++i) {
-        count += (b[i] >= 0) != (b[i + 1] >= 0);
+    unsigned negative = 0;
+    for (int i = 0; i < 5; ++i) {
+        negative |= static_cast<unsigned>(b[i] < 0) << i;
     }
-    return count;
+    return std::popcount((negative ^ (negative >> 1)) & 0xfu);
 }
 
-// The root between lo and hi, where the values have different signs: Newton's steps, halving where
-// one would leave the bracket.
-double root_between(const Quartic& a, double lo, double hi, double at_lo, double at_hi) {
-    const bool rising = at_hi >= 0;
-    double s = lo - at_lo * (hi - lo) / (at_hi - at_lo);
-    for (int i = 0; i < 80; ++i) {
-        const double y = value(a, s);
-        if (y == 0) {
-            return s;
-        }
-        ((y > 0) == rising ? hi : lo) = s;
-        double next = s - y / slope(a, s);
-        if (!(next > lo && next < hi)) {
-            next = 0.5 * (lo + hi);
-            if (next <= lo || next >= hi) {
-                return s;
-            }
-        }
-        // Newton's error squares: what a step of 1e-9 leaves is beyond the digits.
-        if (std::fabs(next - s) < 1e-9) {
-            return clamp(next - value(a, next) / slope(a, next), lo, hi);
-        }
-        s = next;
+// One of Halley's steps (their error cubes) inside a bracket, which it narrows; to the middle where
+// it would leave it. The sums are split so that the processor can do their halves side by side.
+struct Bracket {
+    double lo, hi, at, step;
+    bool rising, near;  // near: a small part of the way to the next root or extremum
+
+    void narrow(const Quartic& a) {
+        const double s = at, s2 = s * s;
+        const double y = (a[0] + a[1] * s) + s2 * ((a[2] + a[3] * s) + s2 * a[4]);
+        const double d = (a[1] + 2 * a[2] * s) + s2 * (3 * a[3] + 4 * a[4] * s);
+        const double half_dd = (a[2] + 3 * a[3] * s) + 6 * a[4] * s2;
+        const bool above = (y >= 0) == rising;
+        hi = above ? s : hi;
+        lo = above ? lo : s;
+        const double bend = y * half_dd, next = s - y * d / (d * d - bend);
+        // Near an extremum a step says nothing.
+        const bool good = (next >= lo) & (next <= hi) & (std::fabs(bend) < 0.5 * d * d);
+        at = good ? next : 0.5 * (lo + hi);
+        step = at - s;
+        near = std::fabs(bend) < 1e-4 * d * d;
     }
-    return s;
+};
+
+// The root between lo and hi, where the values have different signs.
+double root_between(const Quartic& a, double lo, double hi, double at_lo, double at_hi) {
+    // What a step of this size leaves, near a root, is beyond the digits.
+    const double last = 1e-6 * (hi - lo);
+    Bracket b{lo, hi, lo - at_lo * (hi - lo) / (at_hi - at_lo), 0, at_hi >= 0, false};
+    // Almost always enough.
+    b.narrow(a);
+    b.narrow(a);
+    b.narrow(a);
+    for (int i = 0; i < 80 && !(b.near && std::fabs(b.step) <= last); ++i) {
+        b.narrow(a);
+    }
+    return b.at;
 }
 
 class RootsOfQuarter {
  public:
-    RootsOfQuarter(const Quartic& a, int quarter, std::span<SignChange, 4> roots, int& count)
+    RootsOfQuarter(const Quartic& a, int quarter, std::span<SignChange, kMostSignChanges> roots,
+                   int& count)
         : a_(a), quarter_(quarter), roots_(roots), count_(count) {}
 
     // `b` belongs to s in [lo, hi].
@@ -112,10 +119,9 @@ class RootsOfQuarter {
         find(right, middle_s, hi);
     }
 
- private:
     void add(double s, bool rising) {
-        if (count_ == 4) {
-            return;  // rounding has split a touching root
+        if (count_ == kMostSignChanges) {
+            return;
         }
         const double t = kTau * s, k = 1 / (1 + t * t);
         const double c = (1 - t * t) * k, n = 2 * t * k;
@@ -126,9 +132,10 @@ class RootsOfQuarter {
         roots_[count_++] = {at, rising};
     }
 
+ private:
     const Quartic& a_;
     int quarter_;
-    std::span<SignChange, 4> roots_;
+    std::span<SignChange, kMostSignChanges> roots_;
     int& count_;
 };
 
@@ -177,7 +184,8 @@ CirclePoint nearest(const Arc& arc, CirclePoint p) {
     return contains(arc, p) ? p : (dot(p, arc.from) >= dot(p, arc.to) ? arc.from : arc.to);
 }
 
-int sign_changes(const TrigPolynomial& f, std::span<SignChange, 4> roots) {
+int sign_changes(const TrigPolynomial& f, std::span<SignChange, kMostSignChanges> roots,
+                 unsigned skip) {
     int count = 0;
     if (f.c2 == 0 && f.s2 == 0) {
         const double n = std::sqrt(f.c1 * f.c1 + f.s1 * f.s1);
@@ -191,10 +199,27 @@ int sign_changes(const TrigPolynomial& f, std::span<SignChange, 4> roots) {
         return count;
     }
     TrigPolynomial turned = f;
+    int first = -1;
+    bool first_positive = false, positive = false;
     for (int quarter = 0; quarter < 4; ++quarter) {
-        const Quartic a = quartic_of(turned);
-        RootsOfQuarter(a, quarter, roots, count).find(bernstein_of(a), -1, 1);
+        if (((skip >> quarter) & 1) == 0) {
+            const Quartic a = quartic_of(turned);
+            const Bernstein b = bernstein_of(a);
+            RootsOfQuarter here(a, quarter, roots, count);
+            // Between quarters f may have changed in a skipped one, or by rounding.
+            if (first < 0) {
+                first = quarter;
+                first_positive = b[0] >= 0;
+            } else if (positive != (b[0] >= 0)) {
+                here.add(-1, !positive);
+            }
+            here.find(b, -1, 1);
+            positive = b[4] >= 0;
+        }
         turned = {turned.c0, turned.s1, -turned.c1, -turned.c2, -turned.s2};
+    }
+    if (first >= 0 && positive != first_positive) {
+        RootsOfQuarter({}, first, roots, count).add(-1, first_positive);
     }
     return count;
 }

@@ -299,7 +299,7 @@ class Aim {
             }
         };
         for (const TrigPolynomial& f : {meets, outside, ov, meets.derivative()}) {
-            std::array<SignChange, 4> roots;
+            std::array<SignChange, kMostSignChanges> roots;
             const int count = sign_changes(f, roots);
             for (int i = 0; i < count; ++i) {
                 consider(radians_of(roots[i].at));

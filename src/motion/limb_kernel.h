@@ -60,7 +60,7 @@ inline N lesser_of(N a, N b) {
 // A unit vector across the unit vector `a`: the direction of `wanted` as far as it is across, or
 // any where `wanted` is zero or along `a`.
 template <class N>
-inline V3<N> across(V3<N> wanted, V3<N> a) {
+[[gnu::always_inline]] inline V3<N> across(V3<N> wanted, V3<N> a) {
     const N one = N::all(1), none = N::all(0);
     const V3<N> part = wanted - a * dot(wanted, a);
     const N n2 = dot(part, part), whole2 = dot(wanted, wanted);
@@ -81,7 +81,7 @@ inline V3<N> across(V3<N> wanted, V3<N> a) {
 // Source  the sum of outer products, and the quaternion of a matrix by its largest component
 //         (Shepperd 1978), without branches.
 template <class N>
-inline Q4<N> rotation_between(V3<N> a, V3<N> p, V3<N> b, V3<N> z) {
+[[gnu::always_inline]] inline Q4<N> rotation_between(V3<N> a, V3<N> p, V3<N> b, V3<N> z) {
     const V3<N> q = cross(a, p), y = cross(b, z);
     const N m00 = b.x * a.x + z.x * p.x + y.x * q.x, m01 = b.x * a.y + z.x * p.y + y.x * q.y,
             m02 = b.x * a.z + z.x * p.z + y.x * q.z;
@@ -135,7 +135,7 @@ struct Bend {
     N distance;                    // that the bend has
 };
 template <class N>
-inline Bend<N> bend_for(const Triangle<N>& t, N distance2, N sign) {
+[[gnu::always_inline]] inline Bend<N> bend_for(const Triangle<N>& t, N distance2, N sign) {
     const N none = N::all(0), one = N::all(1), two = N::all(2);
     const N d2 = greater_of(t.nearest2, lesser_of(t.farthest2, distance2));
     const N cos2 = greater_of(none, (d2 - t.least2) * t.per_span);
@@ -164,8 +164,9 @@ struct Solved {
 // The limb with its end at `target` (seen from its first joint) and the swivel (cosine, sine)
 // counted from `zero`. With `rotation` the end joint takes what is left of it.
 template <class N, bool kRotation>
-inline Solved<N> solve(const Triangle<N>& t, V3<N> target, V3<N> on_root, Q4<N> rotation,
-                       V3<N> zero, N swivel_cos, N swivel_sin, N sign) {
+[[gnu::always_inline]] inline Solved<N> solve(const Triangle<N>& t, V3<N> target, V3<N> on_root,
+                                              Q4<N> rotation, V3<N> zero, N swivel_cos,
+                                              N swivel_sin, N sign) {
     const N one = N::all(1);
     const N distance2 = dot(target, target);
     const N lost = distance2 - N::all(1e-30f);  // negative where so

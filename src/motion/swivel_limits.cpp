@@ -16,7 +16,7 @@
 // A round cone, A = B, is d_z >= cos A: degree 1.
 #include "swivel_limits.h"
 
-#include <algorithm>
+#include <bit>
 
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
@@ -182,22 +182,31 @@ bool SwivelConstraints::allow(CirclePoint swivel) const {
 
 namespace {
 
+// The middle of a quarter that is not skipped.
+CirclePoint somewhere(unsigned skip) {
+    const int quarter = std::countr_one(skip);
+    return quarter == 0   ? CirclePoint{1, 0}
+           : quarter == 1 ? CirclePoint{0, 1}
+           : quarter == 2 ? CirclePoint{-1, 0}
+                          : CirclePoint{0, -1};
+}
+
 // A change of sign of one of the polynomials, by the order of its angle in [0, 4).
 struct Event {
     double order;
     SignChange change;
 };
 struct Events {
-    static constexpr int kMost = 16;
+    static constexpr int kMost = 4 * kMostSignChanges;
     std::array<Event, kMost> all;
     int count = 0;
     int negative_at_0 = 0;  // how many polynomials are
     bool never = false;     // one is negative everywhere
 
     // A polynomial that never changes its sign adds nothing.
-    void add(const TrigPolynomial& f) {
-        std::array<SignChange, 4> roots;
-        const int n = sign_changes(f, roots);
+    void add(const TrigPolynomial& f, unsigned skip) {
+        std::array<SignChange, kMostSignChanges> roots;
+        const int n = sign_changes(f, roots, skip);
         // Before the angle 0 comes, round the circle, the root with the greatest angle.
         double last_order = -1;
         bool positive = true;
@@ -214,7 +223,7 @@ struct Events {
             all[k] = {order, roots[i]};
         }
         negative_at_0 += !positive;
-        never = never || (n == 0 && f.at({}) < 0);
+        never = never || (n == 0 && f.at(somewhere(skip)) < 0);
     }
 };
 
@@ -224,9 +233,20 @@ void append_arcs(const SwivelConstraints& limits, int family, SwivelIntervals& o
     if (limits.never) {
         return;
     }
+    // Where a limit of degree one forbids a whole quarter of the circle, the others need not be
+    // solved.
+    unsigned skip = 0;
+    for (int i = 0; i < limits.count; ++i) {
+        if (limits.f[i].c2 == 0 && limits.f[i].s2 == 0) {
+            skip |= limits.f[i].negative_quarters();
+        }
+    }
+    if (skip == 0xf) {
+        return;
+    }
     Events events;
     for (int i = 0; i < limits.count; ++i) {
-        events.add(limits.f[i]);
+        events.add(limits.f[i], skip);
         if (events.never) {
             return;
         }
@@ -276,7 +296,7 @@ void append_arcs(const SwivelConstraints& limits, int family, SwivelIntervals& o
 void append_touching(const SwivelConstraints& limits, int family, SwivelIntervals& out) {
     for (int i = 0; i < limits.count; ++i) {
         for (const TrigPolynomial& f : {limits.f[i], limits.f[i].derivative()}) {
-            std::array<SignChange, 4> roots;
+            std::array<SignChange, kMostSignChanges> roots;
             const int n = sign_changes(f, roots);
             for (int k = 0; k < n; ++k) {
                 const CirclePoint at = roots[k].at;

@@ -55,6 +55,19 @@ struct TrigPolynomial {
         return c0 + c2 + p.cos * (c1 + 2 * s2 * p.sin) + p.sin * (s1 - 2 * c2 * p.sin);
     }
     constexpr TrigPolynomial derivative() const { return {0, s1, -c1, 2 * s2, -2 * c2}; }
+    // Needs degree 1. A bit i for each quarter of the circle, around i pi/2, where f is negative.
+    unsigned negative_quarters() const {
+        constexpr double k = 0.70710678118654752440;
+        const double a = k * (c1 + s1), b = k * (c1 - s1), rest = -c0;
+        // At 45, -45, 135 and 225 degrees, and the crest, where it is within the quarter.
+        const bool e = a < rest, se = b < rest, ne = -b < rest, ne2 = -a < rest;
+        const bool crest = c1 * c1 + s1 * s1 < rest * rest && rest > 0;
+        const bool x = std::fabs(c1) >= std::fabs(s1);
+        return static_cast<unsigned>(e & se & (crest | !(x & (c1 > 0)))) |
+               static_cast<unsigned>(e & ne & (crest | !(!x & (s1 > 0)))) << 1 |
+               static_cast<unsigned>(ne & ne2 & (crest | !(x & (c1 < 0)))) << 2 |
+               static_cast<unsigned>(se & ne2 & (crest | !(!x & (s1 < 0)))) << 3;
+    }
     // An upper bound of |f - c0|.
     double swing() const { return std::sqrt(c1 * c1 + s1 * s1) + std::sqrt(c2 * c2 + s2 * s2); }
 };
@@ -75,15 +88,17 @@ struct SignChange {
     CirclePoint at;
     bool rising = false;
 };
-// All points where f changes its sign, at most four, in the order of their angles from -pi/4 on
-// (degree 1: in no order), rising and falling in turn. Roots where f touches zero are not told, or
-// told as two. Needs f that is not zero everywhere (then none).
-// Gives   each root to about an ulp over the slope of f there.
-// Cost    degree 1 about 10 ns; degree 2 about 0.1 us. No allocation.
-// Source  degree 1: cos(x - p) = k. Degree 2: Bernstein coefficients of the quartic in tan(x/2)
-// over
+inline constexpr int kMostSignChanges = 6;  // four, and what rounding may split
+// All points where f changes its sign, rising and falling in turn, in the order of their angles
+// from -pi/4 on (degree 1: in no order). Roots where f touches zero are not told, or told as two.
+// Needs f that is not zero everywhere (then none). `skip` has a bit i for each quarter of the
+// circle, that around i pi/2, in which nobody wants to know: a change there is told at some place
+// there. Gives   each root to about an ulp over the slope of f there. Cost    degree 1 about 10 ns;
+// degree 2 about 0.1 us. No allocation. Source  degree 1: cos(x - p) = k. Degree 2: Bernstein
+// coefficients of the quartic in tan(x/2) over
 //         each quarter of the circle, their changes of sign (Descartes' rule for Bernstein's basis:
 //         Lane and Riesenfeld, BIT 21 (1981) 112-117), and Newton's steps in a bracket.
-int sign_changes(const TrigPolynomial& f, std::span<SignChange, 4> roots);
+int sign_changes(const TrigPolynomial& f, std::span<SignChange, kMostSignChanges> roots,
+                 unsigned skip = 0);
 
 }  // namespace puppetri
