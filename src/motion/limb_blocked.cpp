@@ -4,6 +4,9 @@
 // rotation and the hinge, within their limits, brings the end as near as it gets.
 #include "limb_blocked.h"
 
+#include <algorithm>
+#include <array>
+
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 #include "swivel_limits.h"
@@ -62,32 +65,40 @@ class Descent {
  public:
     Descent(const LimbShape& shape, const LimbGoal& goal) : shape_(shape), goal_(goal) {}
 
+    // Keeps the best few of the poses that it is given.
     void start_from(const LimbPose& pose) {
-        const LimbPose inside = with(pose.start, hinge_angle(shape_, pose));
-        const double cost = cost_of(inside);
-        if (!started_ || cost < cost_) {
-            pose_ = inside;
-            cost_ = cost;
-            started_ = true;
+        Candidate c;
+        c.pose = with(pose.start, hinge_angle(shape_, pose));
+        c.cost = cost_of(c.pose);
+        int k = std::min(count_, kKept - 1);
+        if (count_ == kKept && c.cost >= best_[k].cost) {
+            return;
         }
+        count_ = std::min(count_ + 1, kKept);
+        for (; k > 0 && c.cost < best_[k - 1].cost; --k) {
+            best_[k] = best_[k - 1];
+        }
+        best_[k] = c;
     }
-    // Steps of one angle at a time, halved when none of them helps.
     LimbPose run() {
-        constexpr double kFirst_rad = 0.4, kLast_rad = 1e-7;
-        int tries = 0;
-        for (double step = kFirst_rad; step > kLast_rad && tries < 4000; step /= 2) {
-            for (bool better = true; better && tries < 4000;) {
-                better = false;
-                for (int i = 0; i < 8; ++i) {
-                    better |= attempt(i / 2, i % 2 == 0 ? step : -step);
-                    ++tries;
-                }
+        Candidate best;
+        for (int i = 0; i < count_; ++i) {
+            descend(best_[i], 0.4, 0.01);
+            if (i == 0 || best_[i].cost < best.cost) {
+                best = best_[i];
             }
         }
-        return pose_;
+        descend(best, 0.02, 1e-8);
+        return best.pose;
     }
 
  private:
+    static constexpr int kKept = 10;
+    struct Candidate {
+        LimbPose pose;
+        double cost = 0;
+    };
+
     LimbPose with(Quat start, double hinge_rad) const {
         LimbPose pose;
         pose.start = figure::clamp_to_limit(shape_.start_limit, start);
@@ -97,33 +108,90 @@ class Descent {
         pose.end = clamped_end(shape_, goal_, pose);
         return pose;
     }
-    // The position comes first: a radian of the hand is worth a thousandth of a limb's length.
+    // The position comes first: a radian of the hand is worth a tenth of a millimetre.
     double cost_of(const LimbPose& pose) const {
         const Miss miss = miss_of(shape_, goal_, pose);
         return miss.m + miss.rad * (goal_.kind == LimbGoalKind::kPoint ? 1 : 1e-4);
     }
-    bool attempt(int coordinate, double by) {
+    // Steps of one angle at a time, and of the hinge together with a turn; halved when none helps.
+    // Every pose is brought into the limits, so that steps slide along them.
+    void descend(Candidate& c, double first_rad, double last_rad) const {
+        int tries = 0;
+        for (double step = first_rad; step > last_rad && tries < 3000; step /= 2) {
+            for (bool better = true; better && tries < 3000;) {
+                better = false;
+                for (int i = 0; i < kMoves; ++i, ++tries) {
+                    better |= attempt(c, i / 2, i % 2 == 0 ? step : -step);
+                }
+            }
+        }
+    }
+    // Turns about the axes of the parent, about those of the joint's limit, and the hinge; then the
+    // hinge with each of the latter in both senses.
+    static constexpr int kMoves = 2 * (3 + 3 + 1 + 6);
+    bool attempt(Candidate& c, int coordinate, double by) const {
+        const figure::JointLimit& limit = shape_.start_limit;
+        const Vec3 local[] = {limit.axis_joint, limit.side_joint,
+                              cross(limit.axis_joint, limit.side_joint)};
         const Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-        const double hinge = hinge_angle(shape_, pose_);
-        const LimbPose next =
-            coordinate < 3
-                ? with(normalized(from_axis_angle(axes[coordinate], by) * pose_.start), hinge)
-                : with(pose_.start, hinge + by);
+        Quat start = c.pose.start;
+        double hinge = hinge_angle(shape_, c.pose);
+        if (coordinate < 3) {
+            start = from_axis_angle(axes[coordinate], by) * start;
+        } else if (coordinate < 6) {
+            start = start * from_axis_angle(local[coordinate - 3], by);
+        } else {
+            hinge += by;
+            if (coordinate > 6) {
+                const int k = coordinate - 7;
+                start = start * from_axis_angle(local[k % 3], k < 3 ? by : -by);
+            }
+        }
+        const LimbPose next = with(normalized(start), hinge);
         const double cost = cost_of(next);
-        if (!(cost < cost_ - 1e-15)) {
+        if (!(cost < c.cost - 1e-15)) {
             return false;
         }
-        pose_ = next;
-        cost_ = cost;
+        c = {next, cost};
         return true;
     }
 
     const LimbShape& shape_;
     const LimbGoal& goal_;
-    LimbPose pose_;
-    double cost_ = 0;
-    bool started_ = false;
+    std::array<Candidate, kKept> best_;
+    int count_ = 0;
 };
+
+// From all round each family, and from all over the first joint's cone; with several bends.
+void start_everywhere(Descent& descent, const LimbIk& ik, const SwivelIntervals& families,
+                      CirclePoint first) {
+    constexpr int kRound = 12;
+    const figure::JointLimit &limit = ik.shape().start_limit, &hinge = ik.shape().hinge;
+    const auto with_bends = [&](LimbPose pose) {
+        descent.start_from(pose);
+        for (int n = 0; n < 4; ++n) {
+            const double angle = hinge.kind == figure::LimitKind::kHinge
+                                     ? lerp(hinge.lo_rad, hinge.hi_rad, n / 3.0)
+                                     : n * kPi / 2;
+            pose.hinge = hinge.parent_from_centre * from_axis_angle(hinge.axis_joint, angle);
+            descent.start_from(pose);
+        }
+    };
+    for (int i = 0; i < families.family_count; ++i) {
+        for (int k = 0; k < kRound; ++k) {
+            with_bends(ik.at(families.families[i], first * circle_point(2 * kPi * k / kRound)));
+        }
+    }
+    const Vec3 other = cross(limit.axis_joint, limit.side_joint);
+    for (int k = 0; k < 3 * kRound; ++k) {
+        const double round = 2 * kPi * (k % kRound) / kRound, twist = (k / kRound) / 2.0;
+        const Vec3 about = limit.side_joint * puppetri::cos(round) + other * puppetri::sin(round);
+        LimbPose pose;  // the hand follows
+        pose.start = limit.parent_from_centre * from_axis_angle(about, 1.2) *
+                     from_axis_angle(limit.axis_joint, lerp(limit.lo_rad, limit.hi_rad, twist));
+        with_bends(pose);
+    }
+}
 
 }  // namespace
 
@@ -136,6 +204,9 @@ LimbSolution solve_blocked(const LimbIk& ik, const LimbGoal& goal, const SwivelI
         SwivelConstraints limits;
         limits.add_start(ik.tables().start, families.families[i]);
         append_arcs(limits, i, start_only);
+        if (start_only.count == 0) {
+            append_touching(limits, i, start_only);
+        }
     }
     LimbSolution solution;
     if (start_only.count > 0) {
@@ -147,12 +218,10 @@ LimbSolution solve_blocked(const LimbIk& ik, const LimbGoal& goal, const SwivelI
         solution.pose.end = figure::clamp_to_limit(shape.end_limit, solution.pose.end);
     } else {
         Descent descent(shape, goal);
-        constexpr int kStarts = 12;
-        for (int i = 0; i < families.family_count; ++i) {
-            for (int k = 0; k < kStarts; ++k) {
-                descent.start_from(ik.at(families.families[i],
-                                         choice.swivel * circle_point(2 * kPi * k / kStarts)));
-            }
+        if (choice.rule == SwivelRule::kLeastMotion) {
+            descent.start_from(choice.from);  // from there alone, so that the limb does not leap
+        } else {
+            start_everywhere(descent, ik, families, choice.swivel);
         }
         solution.pose = descent.run();
         solution.family = 0;

@@ -108,8 +108,15 @@ LimbSolution LimbIk::choose(const SwivelIntervals& intervals, const SwivelChoice
     PUP_REQUIRE(intervals.count > 0);
     PUP_REQUIRE(choice.rule != SwivelRule::kObjective || choice.cost != nullptr);
     Best best;
+    bool has_family = false;
+    for (int i = 0; i < intervals.count; ++i) {
+        has_family = has_family || intervals.intervals[i].family == choice.family;
+    }
     for (int i = 0; i < intervals.count; ++i) {
         const int index = intervals.intervals[i].family;
+        if (has_family && index != choice.family) {
+            continue;
+        }
         const LimbFamily& family = intervals.families[index];
         const Arc& arc = intervals.intervals[i].arc;
         switch (choice.rule) {

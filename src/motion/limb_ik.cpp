@@ -298,7 +298,8 @@ class Aim {
                 best_way = way;
             }
         };
-        for (const TrigPolynomial& f : {meets, outside, ov, meets.derivative()}) {
+        for (const TrigPolynomial& f :
+             {meets, outside, ov, meets.derivative(), outside.derivative()}) {
             std::array<SignChange, kMostSignChanges> roots;
             const int count = sign_changes(f, roots);
             for (int i = 0; i < count; ++i) {

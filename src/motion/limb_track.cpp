@@ -27,6 +27,33 @@ Vec3 lagging_line(Vec3 last, Vec3 direction, double distance_m, double rim_m) {
     return rotate(from_axis_angle(unit, most), direction);
 }
 
+double largest_turn(const LimbPose& a, const LimbPose& b) {
+    return std::max({angle_between(a.start, b.start), angle_between(a.hinge, b.hinge),
+                     angle_between(a.end, b.end)});
+}
+
+// An arc that narrows until it is gone would leave a limb at its end no way but a jump, while the
+// middle may lead on. So a limb that is near an end of its arc is brought away from it, by no more
+// than the goal moves it anyway: at rest it stays.
+LimbSolution keep_from_ends(const LimbIk& ik, const SwivelIntervals& arcs,
+                            const LimbSolution& least, double moved_rad) {
+    constexpr double kOuter = 0.25;  // the part of the arc at each end
+    for (int i = 0; i < arcs.count; ++i) {
+        const auto& [family, arc] = arcs.intervals[i];
+        if (family != least.family || arc.full || !contains(arc, least.swivel)) {
+            continue;
+        }
+        const double length = length_rad(arc), at = length_rad({arc.from, least.swivel});
+        const double inner = clamp(at, kOuter * length, (1 - kOuter) * length);
+        const double by = clamp(inner - at, -moved_rad, moved_rad);
+        if (by == 0 || at > length) {
+            return least;
+        }
+        return ik.choose(arcs, {.swivel = least.swivel * circle_point(by), .family = family});
+    }
+    return least;
+}
+
 }  // namespace
 
 LimbStep follow(const LimbIk& ik, LimbGoal goal, LimbTrack& track) {
@@ -48,14 +75,20 @@ LimbStep follow(const LimbIk& ik, LimbGoal goal, LimbTrack& track) {
     const SwivelChoice choice =
         track.started ? SwivelChoice{.rule = SwivelRule::kLeastMotion, .from = track.pose}
                       : SwivelChoice{.rule = SwivelRule::kMiddle};
-    step.solution = ik.solve(goal, choice);
-    if (moved_goal > 0) {
-        step.solution.residual_m += moved_goal;
+    SwivelIntervals arcs;
+    ik.intervals(goal, arcs);
+    if (arcs.count == 0) {
+        step.solution = ik.solve(goal, choice);
+    } else {
+        step.solution = ik.choose(arcs, choice);
+        if (track.started) {
+            step.solution = keep_from_ends(ik, arcs, step.solution,
+                                           largest_turn(track.pose, step.solution.pose));
+        }
     }
+    step.solution.residual_m += moved_goal;
     if (track.started) {
-        step.moved_rad = std::max({angle_between(track.pose.start, step.solution.pose.start),
-                                   angle_between(track.pose.hinge, step.solution.pose.hinge),
-                                   angle_between(track.pose.end, step.solution.pose.end)});
+        step.moved_rad = largest_turn(track.pose, step.solution.pose);
     }
     track = {step.solution.pose, line, true};
     return step;

@@ -95,6 +95,7 @@ struct SwivelChoice {
     double (*cost)(const void* self, const LimbPose& pose) = nullptr;
     const void* self = nullptr;
     int samples = 90;
+    int family = -1;  // only of this one, where it has an arc
 };
 
 struct LimbSolution {
