@@ -32,6 +32,14 @@ std::vector<std::uint32_t> last_uses(const Temporal& formula) {
 
 }  // namespace
 
+CtlChecker::CtlChecker(const Graph& graph, const Waits* waits) : graph_(graph) {
+    const auto rare = [&](const Edge& e) { return waits->is_rare(e); };
+    if (waits != nullptr && (waits->kinds != 0 || std::any_of(graph.edges.items.begin(),
+                                                              graph.edges.items.end(), rare))) {
+        waits_ = waits;
+    }
+}
+
 const net::Rows<std::uint32_t>& CtlChecker::backwards() {
     if (given_ != nullptr) {
         return *given_;
@@ -86,6 +94,66 @@ StateBits CtlChecker::some_globally(const StateBits& a, bool past_cuts) {
         }
     }
     return result;
+}
+
+// The a-states from which a path stays in a and ends, is cut, or goes round for ever: in a
+// component in which no kind of waiting goes on for ever, or without letting time pass.
+StateBits CtlChecker::just_globally(const StateBits& a, const StateBits& cuts) {
+    StateBits seeds(graph_.size());
+    a.for_each([&](std::uint32_t s) {
+        if (may_end(graph_, s) || cuts[s]) {
+            seeds.add(s);
+        }
+    });
+    const auto add_cycles = [&](const Graph& graph, const Waits* waits) {
+        const StrongComponents components = strong_components(graph, &a);
+        const StateBits cyclic = cyclic_components(graph, components);
+        const std::uint32_t words = waits != nullptr ? (waits->kinds + 63) / 64 : 0;
+        // Per component: time may pass somewhere in it; kinds that do not wait somewhere, or are
+        // stirred.
+        std::vector<bool> passes(components.count, false);
+        const unsigned silent = words != 0 ? Graph::kSettled : Graph::kOptional;
+        std::vector<std::uint64_t> met(std::size_t{components.count} * words, 0);
+        a.for_each([&](std::uint32_t s) {
+            const std::uint32_t c = components.of[s];
+            passes[c] = passes[c] || (graph.flags[s] & silent) != 0;
+            for (std::uint32_t w = 0; w < words; ++w) {
+                met[std::size_t{c} * words + w] |= ~waits->waiting[std::size_t{s} * words + w];
+            }
+            for (std::uint32_t e = graph.edges.starts[s];
+                 waits != nullptr && e < graph.edges.starts[s + 1]; ++e) {
+                const std::uint32_t to = graph.edges.items[e].target;
+                passes[c] =
+                    passes[c] || (a[to] && components.of[to] == c && graph.lets_time_pass(e));
+                for (std::uint32_t w = 0; a[to] && components.of[to] == c && w < words; ++w) {
+                    met[std::size_t{c} * words + w] |= waits->stirred[std::size_t{e} * words + w];
+                }
+            }
+        });
+        a.for_each([&](std::uint32_t s) {
+            const std::uint32_t c = components.of[s];
+            bool just = cyclic[c] && (waits == nullptr || passes[c]);
+            for (std::uint32_t kind = 0; waits != nullptr && just && kind < waits->kinds; ++kind) {
+                just = ((met[std::size_t{c} * words + kind / 64] >> (kind % 64)) & 1) != 0;
+            }
+            if (just) {
+                seeds.add(s);
+            }
+        });
+    };
+    add_cycles(graph_, waits_);
+    Graph timeless;  // where no time passes, nothing that waits helps
+    timeless.flags = graph_.flags;
+    for (std::uint32_t s = 0; s < graph_.size(); ++s) {
+        for (const Edge& e : graph_.edges.row(s)) {
+            if (e.label != Edge::kPass && !waits_->is_rare(e)) {
+                timeless.edges.items.push_back(e);
+            }
+        }
+        timeless.edges.starts.push_back(static_cast<std::uint32_t>(timeless.edges.items.size()));
+    }
+    add_cycles(timeless, nullptr);
+    return leading_to(backwards(), seeds, &a);
 }
 
 std::optional<std::vector<CtlChecker::Labels>> CtlChecker::all_labels(
@@ -165,23 +233,35 @@ std::optional<std::vector<CtlChecker::Labels>> CtlChecker::all_labels(
                 break;
             case Op::kSomeGlobally:
                 if (graph_.exact) {
-                    mine.must = some_globally(labels[n.a].must, false);
-                } else {  // where nothing can follow in the picture, nothing can in truth
-                    mine.must = StateBits(size);
-                    labels[n.a].must.for_each([&](std::uint32_t s) {
-                        if (graph_.dead(s) && !cut(s)) {
-                            mine.must.add(s);
-                        }
-                    });
+                    mine.must = waits_ != nullptr ? just_globally(labels[n.a].must, none)
+                                                  : some_globally(labels[n.a].must, false);
+                } else {  // where it may not be left, every run keeps it
+                    StateBits goal = labels[n.a].must;
+                    goal.complement();
+                    goal |= cuts;
+                    mine.must = leading_to(backwards(), goal);
+                    mine.must.complement();
                 }
                 if (!one) {
-                    mine.may = some_globally(labels[n.a].may, true);
+                    mine.may = waits_ != nullptr ? just_globally(labels[n.a].may, cuts)
+                                                 : some_globally(labels[n.a].may, true);
                 }
                 break;
             case Op::kSomeUntil:
-                mine.must = graph_.exact
-                                ? leading_to(backwards(), labels[n.b].must, &labels[n.a].must)
-                                : labels[n.b].must;
+                if (graph_.exact) {
+                    mine.must = leading_to(backwards(), labels[n.b].must, &labels[n.a].must);
+                } else {  // where it cannot be avoided, some run does it
+                    StateBits open = labels[n.b].must;
+                    open.complement();
+                    StateBits broken = labels[n.a].must;
+                    broken.complement();
+                    broken |= cuts;
+                    broken &= open;
+                    mine.must = leading_to(backwards(), broken, &open);
+                    mine.must |=
+                        waits_ != nullptr ? just_globally(open, cuts) : some_globally(open, true);
+                    mine.must.complement();
+                }
                 if (!one) {
                     StateBits goal = cuts;
                     goal &= labels[n.a].may;

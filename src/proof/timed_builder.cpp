@@ -112,6 +112,23 @@ TimedBuilder::TimedBuilder(const GraphRequest& request, ClockForm form, const ch
       meter_(request.budget, method) {
     graph_.states = std::make_unique<TimedGraph::States>(world_of(request, atoms_), form);
     driver_ = std::make_unique<Driver>(graph_.states->world, form);
+    const NetTables& n = request.net.tables();
+    Waits& waits = graph_.waits;
+    waits.rare.assign(n.events.size(), 1);
+    for (const Special& s : n.specials) {
+        for (const std::uint32_t e : s.raises) {
+            waits.rare[e] = 0;
+        }
+    }
+    waits.by_outside = waits.rare;
+    for (const ScheduledEvent& s : n.declarations.schedule) {
+        waits.by_outside[s.event.value] = 0;
+    }
+    for (std::uint32_t e = 0; e < n.events.size(); ++e) {
+        if (!n.declarations.events[e].outside || of_movement(request.net, e)) {
+            waits.by_outside[e] = 0;
+        }
+    }
 }
 
 Ended TimedBuilder::look() {

@@ -214,64 +214,108 @@ class Checker {
         }
         return nodes;
     }
-    bool has_outside_edges() const {
-        return std::any_of(
-            graph_.edges.items.begin(), graph_.edges.items.end(), [](const proof::Edge& e) {
-                return e.label != proof::Edge::kPass && (e.label & proof::Edge::kEvent) != 0;
-            });
+
+    // Nodes from which no path leaves `open`, unless the outside helps.
+    Nodes hopeless(const Product& p, const Nodes& open) const {
+        Nodes lost(p.size(), 0);
+        if (!covers(p)) {
+            return lost;
+        }
+        Nodes out(p.size(), 0);
+        for (std::uint32_t n = 0; n < p.size(); ++n) {
+            out[n] = open[n] == 0 ? 1 : 0;
+        }
+        std::vector<std::uint8_t> optional(p.targets.size(), 0);
+        for (std::uint64_t e = 0; e < p.targets.size(); ++e) {
+            optional[e] = view_.timed->waits.is_by_outside(graph_.edges.items[p.edge[e]]) ? 1 : 0;
+        }
+        const std::vector<std::uint32_t> far = distances(p, out, optional);
+        for (std::uint32_t n = 0; n < p.size(); ++n) {
+            lost[n] = far[n] == kFar ? 1 : 0;
+        }
+        return lost;
     }
 
-    // Every path leaves `open`, wherever it does not rest; or those that do not are unlucky for
-    // ever.
-    Finding leaves(Product p, const Nodes& open, const char* owed) {
-        if (auto cycle = endless(p, open, {}, &view_.timed->waits)) {
-            // Ties alone decide on graphs of single states without the outside: where the way out
-            // always stays open, it is taken with probability 1.
-            const bool lucky = view_.concrete && graph_.exact && covers(p) && !has_outside_edges();
-            if (lucky) {
-                Nodes out(p.size(), 0);
-                for (std::uint32_t n = 0; n < p.size(); ++n) {
-                    out[n] = open[n] == 0 ? 1 : 0;
-                }
-                const std::vector<std::uint32_t> far = distances(p, out);
-                if (std::none_of(far.begin(), far.end(),
-                                 [](std::uint32_t d) { return d == kFar; })) {
-                    Finding f = suspect(std::move(p), {}, Target::kEndless,
-                                        std::string("only ever-unlucky ties (probability 0) go "
-                                                    "round for ever ") +
-                                            owed);
-                    f.kind = Kind::kHolds;
-                    f.force = Force::kProbabilityOne;
-                    f.targets = set_of(f.product, *cycle);
-                    tell_vacuity(f);
-                    return f;
-                }
-            }
-            // A cycle that can never be left needs no cycle as witness: being there is enough.
-            Nodes out(p.size(), 0);
+    // The greatest part of `open` that a run can be kept in by times and the outside, whoever wins
+    // ties: nodes where only ties decide have to have every winner's edge in it.
+    Nodes kept_in(const Product& p, const Nodes& open) const {
+        Nodes inside = open;
+        bool changed = true;
+        while (changed) {
+            changed = false;
             for (std::uint32_t n = 0; n < p.size(); ++n) {
-                out[n] = open[n] == 0 ? 1 : 0;
-            }
-            if (covers(p)) {
-                const std::vector<std::uint32_t> far = distances(p, out);
-                Nodes hopeless(p.size(), 0);
-                for (std::uint32_t n = 0; n < p.size(); ++n) {
-                    hopeless[n] = far[n] == kFar ? 1 : 0;
+                if (inside[n] == 0 || p.rests(n)) {
+                    continue;
                 }
-                if (any(hopeless)) {
-                    return suspect(std::move(p), std::move(hopeless), Target::kHopeless,
-                                   std::string("what is awaited is out of reach ") + owed);
+                bool some = false, every_winner = true, tie = false;
+                for (std::uint64_t e = p.starts[n]; e < p.starts[n + 1];) {
+                    const std::uint32_t label = p.label(e);
+                    bool stays = false;  // some edge of this label
+                    for (; e < p.starts[n + 1] && p.label(e) == label; ++e) {
+                        stays = stays || inside[p.targets[e]] != 0;
+                    }
+                    if ((label & proof::Edge::kEvent) == 0) {
+                        tie = true;
+                        every_winner = every_winner && stays;
+                    } else {
+                        some = some || stays;
+                    }
+                }
+                if (!some && !(tie && every_winner)) {
+                    inside[n] = 0;
+                    changed = true;
                 }
             }
-            Nodes target = set_of(p, *cycle);
-            return suspect(std::move(p), std::move(target), Target::kEndless,
-                           std::string("it may go round for ever ") + owed);
         }
-        if (!covers(p)) {
-            return cut_short();
+        return inside;
+    }
+
+    // Every path leaves `open` (where it does not rest); or those that do not are unlucky for ever.
+    Finding leaves(Product p, const Nodes& open, const char* owed) {
+        const auto cycle = endless(p, open, {}, &view_.timed->waits);
+        if (!cycle) {
+            if (!covers(p)) {
+                return cut_short();
+            }
+            Finding f = holds(Force::kEveryChoice);
+            tell_vacuity(f);
+            return f;
         }
-        Finding f = holds(Force::kEveryChoice);
-        tell_vacuity(f);
+        // Where neither times nor the outside can keep it from the way out, only ties can: then it
+        // is taken with probability 1, since there are finitely many nodes.
+        if (covers(p) && !endless(p, kept_in(p, open), {}, &view_.timed->waits)) {
+            Finding f = suspect(std::move(p), {}, Target::kEndless,
+                                std::string("only ever-unlucky ties (probability 0) go "
+                                            "round for ever ") +
+                                    owed);
+            f.kind = Kind::kHolds;
+            f.force = Force::kProbabilityOne;
+            f.targets = set_of(f.product, *cycle);
+            tell_vacuity(f);
+            return f;
+        }
+        Nodes target = set_of(p, *cycle);
+        return suspect(std::move(p), std::move(target), Target::kEndless,
+                       std::string("it may go round for ever ") + owed);
+    }
+
+    // A run that rests in `rest`, or gets to where it is hopeless, refutes it.
+    std::optional<Finding> stuck(Product& p, const Nodes& open, Nodes rest, const char* resting,
+                                 const char* owed) {
+        Nodes lost = hopeless(p, open);
+        const bool rests = any(rest);
+        if (!any(lost)) {
+            return rests ? std::optional(
+                               suspect(std::move(p), std::move(rest), Target::kRest, resting))
+                         : std::nullopt;
+        }
+        for (std::uint32_t n = 0; n < p.size(); ++n) {
+            rest[n] = rest[n] != 0 || lost[n] != 0 ? 1 : 0;
+        }
+        Finding f = suspect(std::move(p), std::move(rest), Target::kHopeless,
+                            rests ? std::string(resting) + ", or is out of reach"
+                                  : std::string("what is awaited is out of reach ") + owed);
+        f.certain = std::move(lost);
         return f;
     }
 
@@ -279,10 +323,9 @@ class Checker {
         const Monitor monitor(o_);
         Product p = product(&monitor);
         const Nodes open = owing(p, monitor);
-        Nodes rest = resting(p, open);
-        if (any(rest)) {
-            return suspect(std::move(p), std::move(rest), Target::kRest,
-                           "everything may come to rest before it happens");
+        if (auto f = stuck(p, open, resting(p, open),
+                           "everything may come to rest before it happens", "before it happens")) {
+            return std::move(*f);
         }
         return leaves(std::move(p), open, "before it happens");
     }
@@ -301,9 +344,9 @@ class Checker {
                 }
             }
         }
-        if (any(wrong)) {
-            return suspect(std::move(p), std::move(wrong), Target::kRest,
-                           "it may come to rest where no end is declared");
+        if (auto f = stuck(p, open, std::move(wrong),
+                           "it may come to rest where no end is declared", "without an end")) {
+            return std::move(*f);
         }
         // States that may rest, but need not, are ends; what goes on from them must end as well.
         return leaves(std::move(p), open, "without an end");
@@ -336,8 +379,10 @@ class Checker {
             hopeless[n] = far[n] == kFar ? 1 : 0;
         }
         if (any(hopeless)) {
-            return suspect(std::move(p), std::move(hopeless), Target::kHopeless,
-                           what + " gets out of reach");
+            Finding f = suspect(std::move(p), std::move(hopeless), Target::kHopeless,
+                                what + " gets out of reach");
+            f.certain = f.targets;
+            return f;
         }
         if (view_.concrete && graph_.exact) {
             return holds();

@@ -161,6 +161,8 @@ class Builder {
                 return push({.op = Op::kFires, .index = n.index});
             case FormulaOp::kEvent:
                 out_.reads_firings = true;
+                // Graphs leave out what nobody listens to, but for events in their atoms.
+                atoms_.add(Formula::event(net::EventIndex{n.index}));
                 return push({.op = Op::kEvent, .index = n.index});
             case FormulaOp::kNot: {
                 const std::uint32_t a = add(n.a);
@@ -336,12 +338,7 @@ Obligation make_obligation(const net::Net& net, const net::Rule& rule, const Hos
         case net::RuleKind::kFormula:
             o.temporal = proof::taken_apart(rule.operands.front());
             for (const Formula& atom : o.temporal->atoms) {
-                const Operand operand = make_operand(atom, host, atoms, &o.about_figures);
-                const Operand::Node& n = operand.nodes.back();
-                const bool one = operand.nodes.size() == 1 && n.op == Operand::Node::Op::kAtom;
-                o.speaks_of_steps = o.speaks_of_steps || !one;
-                o.may_atoms.push_back(one ? n.may : 0);
-                o.must_atoms.push_back(one ? n.must : 0);
+                o.operands.push_back(make_operand(atom, host, atoms, &o.about_figures));
             }
             break;
         default:

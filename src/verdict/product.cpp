@@ -115,11 +115,29 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uin
 
 namespace {
 
-// Every condition "what waits of this kind does not wait for ever" is met somewhere in the
-// component: a generalized Buechi condition, so that looking at whole components is enough.
+// Time may pass in the component, and every condition "what waits of this kind does not wait for
+// ever" is met somewhere in it: a generalized Buechi condition, so that looking at whole components
+// is enough.
 bool is_just(const Product& p, const std::vector<std::uint32_t>& component,
              const std::vector<std::uint32_t>& of_node, std::uint32_t number, const Nodes& open,
              const std::vector<std::uint8_t>& left_out, const proof::Waits& waits) {
+    const unsigned silent = waits.kinds != 0 ? proof::Graph::kSettled : proof::Graph::kOptional;
+    const auto passes = [&](std::uint32_t n) {
+        if ((p.graph->flags[p.state[n]] & silent) != 0) {
+            return true;
+        }
+        for (std::uint64_t e = p.starts[n]; e < p.starts[n + 1]; ++e) {
+            const std::uint32_t to = p.targets[e];
+            if (p.graph->lets_time_pass(p.edge[e]) && open[to] != 0 && of_node[to] == number &&
+                (left_out.empty() || left_out[e] == 0)) {
+                return true;
+            }
+        }
+        return false;
+    };
+    if (std::none_of(component.begin(), component.end(), passes)) {
+        return false;
+    }
     for (std::uint32_t kind = 0; kind < waits.kinds; ++kind) {
         bool met = false;
         for (std::size_t i = 0; !met && i < component.size(); ++i) {
@@ -212,14 +230,16 @@ std::optional<std::vector<std::uint32_t>> cycles(const Product& p, const Nodes& 
 std::optional<std::vector<std::uint32_t>> endless(const Product& p, const Nodes& open,
                                                   const std::vector<std::uint8_t>& left_out,
                                                   const proof::Waits* waits) {
-    if (waits == nullptr || waits->kinds == 0) {
+    if (waits == nullptr) {
         return cycles(p, open, left_out, nullptr);
     }
-    // Where no time passes, nothing that waits helps.
+    // Where no time passes, nothing that waits helps, and events come finitely often.
     std::vector<std::uint8_t> without = left_out;
     without.resize(p.targets.size(), 0);
     for (std::uint64_t e = 0; e < p.targets.size(); ++e) {
-        without[e] = without[e] != 0 || p.label(e) == proof::Edge::kPass ? 1 : 0;
+        const proof::Edge& edge = p.graph->edges.items[p.edge[e]];
+        without[e] =
+            without[e] != 0 || edge.label == proof::Edge::kPass || waits->is_rare(edge) ? 1 : 0;
     }
     auto zeno = cycles(p, open, without, nullptr);
     return zeno ? zeno : cycles(p, open, left_out, waits);
@@ -347,10 +367,11 @@ std::optional<std::int64_t> longest_stay(const Product& product, const Nodes& op
 
 std::vector<std::uint32_t> distances_to_edges(const Product& p,
                                               const std::vector<std::uint8_t>& edges,
-                                              const Nodes& targets) {
+                                              const Nodes& targets,
+                                              const std::vector<std::uint8_t>& left_out) {
     std::vector<std::uint64_t> starts(p.size() + 1, 0);
-    for (const std::uint32_t to : p.targets) {
-        ++starts[to + 1];
+    for (std::uint64_t e = 0; e < p.targets.size(); ++e) {
+        starts[p.targets[e] + 1] += left_out.empty() || left_out[e] == 0 ? 1 : 0;
     }
     for (std::uint32_t n = 0; n < p.size(); ++n) {
         starts[n + 1] += starts[n];
@@ -361,6 +382,9 @@ std::vector<std::uint32_t> distances_to_edges(const Product& p,
     for (std::uint32_t n = 0; n < p.size(); ++n) {
         bool here = !targets.empty() && targets[n] != 0;
         for (std::uint64_t e = p.starts[n]; e < p.starts[n + 1]; ++e) {
+            if (!left_out.empty() && left_out[e] != 0) {
+                continue;
+            }
             sources[at[p.targets[e]]++] = n;
             here = here || (!edges.empty() && edges[e] != 0);
         }
@@ -381,8 +405,9 @@ std::vector<std::uint32_t> distances_to_edges(const Product& p,
     return distance;
 }
 
-std::vector<std::uint32_t> distances(const Product& product, const Nodes& targets) {
-    return distances_to_edges(product, {}, targets);
+std::vector<std::uint32_t> distances(const Product& product, const Nodes& targets,
+                                     const std::vector<std::uint8_t>& left_out) {
+    return distances_to_edges(product, {}, targets, left_out);
 }
 
 }  // namespace puppetri::verdict

@@ -14,6 +14,7 @@
 #include "builtin_rules.h"
 #include "by_structure.h"
 #include "join_rule.h"
+#include "linear_rule.h"
 #include "part.h"
 #include "plain_witness.h"
 #include "puppetri/net/tables.h"
@@ -40,6 +41,7 @@ struct Work {
     Asked asked;  // in the numbers of the whole net
     Verdict verdict;
     bool done = false;
+    bool wants_times = false;  // known to be refuted, by a path that only exact times can play
     double seconds = 0;
 };
 
@@ -335,7 +337,8 @@ class Prover {
                 if (w.done || left() <= 0 || cancelled()) {
                     continue;
                 }
-                if (method != Method::kReadiness && !worth(part, method)) {
+                const bool plays = method == Method::kExact && w.wants_times;
+                if (method != Method::kReadiness && !plays && !worth(part, method)) {
                     continue;
                 }
                 const double begin = now_s();
@@ -573,6 +576,7 @@ class Prover {
                 return;
             case Kind::kRefuted:
                 refuted(part, graph, *f, w, method);
+                by_game(part, number, method, w);
                 return;
             case Kind::kSuspect:
                 if (f->target == Target::kFires) {
@@ -608,6 +612,28 @@ class Prover {
         }
     }
 
+    // A formula of linear time whose path the player did not go.
+    void by_game(Part& part, std::uint32_t number, Method method, Work& w) {
+        const Obligation& o = part.obligation(number);
+        if (w.verdict.answer != Answer::kUnknown || !o.temporal ||
+            o.temporal->logic != proof::Temporal::Logic::kLtl) {
+            return;
+        }
+        const GraphView view = part.view(method);
+        const Finding f = check_linear(part.net(), o, view, budget(0.3), kMostEdges);
+        if (f.kind == Kind::kHolds) {
+            w.verdict.answer = Answer::kProved;
+            w.verdict.force = f.force;
+            w.verdict.reason.clear();
+        } else if (f.kind == Kind::kSuspect) {
+            chase(part, f, w, true);
+        }
+        if (w.verdict.answer != Answer::kUnknown) {
+            w.verdict.method = name_of(method);
+            w.verdict.assumptions = view.timed->assumptions;
+        }
+    }
+
     // By a path of an exact graph of the whole net: it counts if the player goes it.
     void refuted(const Part& part, const proof::TimedGraph& graph, const Finding& f, Work& w,
                  Method method) {
@@ -620,20 +646,35 @@ class Prover {
                 return;
             }
         }
-        if (f.path.empty() && f.loop_from == kFar) {
+        if (!f.shown) {
             w.verdict.notes.push_back("no single run shows it: it is about choices");
         } else {
             std::string trouble = "it lies in a part of the net";
             const bool whole_net = &part.net() == &net_;
-            const auto script = whole_net ? graph.script(f.path, &trouble) : std::nullopt;
-            auto witness = script ? witness_of(theatre_, *script, &trouble) : std::nullopt;
+            // Events of the outside are no reason for an instant to last for ever, and the stage
+            // need not do the same again.
+            const bool doubt =
+                f.loop_from != kFar &&
+                (theatre_.auto_durations ||
+                 std::any_of(f.path.begin() + f.loop_from, f.path.end(), [&](std::uint32_t e) {
+                     return graph.waits.is_rare(graph.graph.edges.items[e]);
+                 }));
+            std::vector<std::uint32_t> path = f.path, rounds;
+            if (doubt) {
+                go_round(graph.graph, f.loop_from, path, rounds);
+            }
+            const auto script = whole_net ? graph.script(path, &trouble) : std::nullopt;
+            auto witness = script ? witness_of(theatre_, *script, &trouble, rounds) : std::nullopt;
             if (!witness) {
+                w.wants_times = method == Method::kReadiness;
                 w.verdict.reason = f.reason + ", but the player does not go that way: " + trouble;
                 return;
             }
             witness->rule = w.verdict.rule;
             witness->says = f.reason;
-            if (f.loop_from != kFar) {
+            if (doubt) {
+                witness->violates_after = Witness::kNone;
+            } else if (f.loop_from != kFar) {
                 witness->lasso_from = firings_along(graph.graph, f.path, f.loop_from);
             } else {
                 witness->violates_after = static_cast<std::uint32_t>(witness->steps.size());
@@ -643,6 +684,17 @@ class Prover {
         w.verdict.answer = Answer::kRefuted;
         w.verdict.method = name_of(method);
         w.verdict.assumptions = graph.assumptions;
+    }
+    // Some rounds of the loop; after how many firings each ends.
+    static void go_round(const proof::Graph& graph, std::uint32_t loop_from,
+                         std::vector<std::uint32_t>& path, std::vector<std::uint32_t>& rounds) {
+        constexpr std::size_t kRounds = 8, kLongest = 4000;
+        const std::vector<std::uint32_t> loop(path.begin() + loop_from, path.end());
+        for (std::size_t i = 0; i < kRounds && path.size() + loop.size() < kLongest; ++i) {
+            rounds.push_back(firings_along(graph, path, static_cast<std::uint32_t>(path.size())));
+            path.insert(path.end(), loop.begin(), loop.end());
+        }
+        rounds.push_back(firings_along(graph, path, static_cast<std::uint32_t>(path.size())));
     }
     static std::uint32_t firings_along(const proof::Graph& graph,
                                        const std::vector<std::uint32_t>& path, std::uint32_t to) {

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "figure_judge.h"
+#include "guide.h"
+#include "linear_rule.h"
 #include "puppetri/net/state.h"
 #include "puppetri/net/tables.h"
 #include "puppetri/stage/stage.h"
@@ -24,217 +26,6 @@ double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
-
-// Where the run may be in the graph.
-class Track {
- public:
-    Track(const Hunt& hunt, const std::vector<std::uint32_t>& distance)
-        : hunt_(hunt), p_(hunt.finding->product), distance_(distance), nodes_(p_.first) {
-        close();
-    }
-
-    bool lost() const { return nodes_.empty(); }
-    std::uint32_t distance() const { return nearest(nodes_); }
-    bool all_targets() const {
-        return std::all_of(nodes_.begin(), nodes_.end(),
-                           [&](std::uint32_t n) { return hunt_.finding->targets[n] != 0; });
-    }
-
-    void fired(std::uint32_t transition) {
-        const std::uint32_t label = mapped(hunt_.transitions, transition);
-        if (label != kNoLabel) {
-            nodes_ = after(label);
-            close();
-        }
-    }
-    void occurred(std::uint32_t event) {
-        const std::uint32_t e = mapped(hunt_.events, event);
-        if (e != kNoLabel) {
-            std::vector<std::uint32_t> next = after(proof::Edge::kEvent | e);
-            // Occurrences that change nothing need not be edges.
-            if (!next.empty()) {
-                nodes_ = std::move(next);
-                close();
-            }
-        }
-    }
-    // How near the target is after this firing.
-    std::uint32_t score(std::uint32_t transition) const {
-        const std::uint32_t label = mapped(hunt_.transitions, transition);
-        return label == kNoLabel ? distance() : nearest(after(label));
-    }
-    // The event of the outside that the nearest way begins with, or none. Only if no firing begins
-    // a way as near; `here`: without waiting for anything.
-    std::optional<std::uint32_t> wanted_event(bool here) const {
-        const std::uint32_t best = distance();
-        if (best == kFar || best == 0) {
-            return std::nullopt;
-        }
-        std::optional<std::uint32_t> found;
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            const std::uint32_t n = nodes_[i];
-            if (distance_[n] != best || (here && i >= direct_)) {
-                continue;
-            }
-            for (std::uint64_t e = p_.starts[n]; e < p_.starts[n + 1]; ++e) {
-                if (distance_[p_.targets[e]] != best - 1) {
-                    continue;
-                }
-                const std::uint32_t label = p_.label(e);
-                if (label == proof::Edge::kPass || (label & proof::Edge::kEvent) == 0) {
-                    return std::nullopt;
-                }
-                found = label & ~proof::Edge::kEvent;
-            }
-        }
-        if (!found || hunt_.events.empty()) {
-            return found;
-        }
-        const auto at = std::find(hunt_.events.begin(), hunt_.events.end(), *found);
-        return at == hunt_.events.end()
-                   ? std::nullopt
-                   : std::optional(static_cast<std::uint32_t>(at - hunt_.events.begin()));
-    }
-
- private:
-    static constexpr std::uint32_t kNoLabel = ~std::uint32_t{0};
-
-    static std::uint32_t mapped(const std::vector<std::uint32_t>& map, std::uint32_t index) {
-        return map.empty() ? index : index < map.size() ? map[index] : kNoLabel;
-    }
-    std::uint32_t nearest(const std::vector<std::uint32_t>& nodes) const {
-        std::uint32_t best = kFar;
-        for (const std::uint32_t n : nodes) {
-            best = std::min(best, distance_[n]);
-        }
-        return best;
-    }
-    std::vector<std::uint32_t> after(std::uint32_t label) const {
-        std::vector<std::uint32_t> next;
-        for (const std::uint32_t n : nodes_) {
-            for (std::uint64_t e = p_.starts[n]; e < p_.starts[n + 1]; ++e) {
-                if (p_.label(e) == label) {
-                    next.push_back(p_.targets[e]);
-                }
-            }
-        }
-        std::sort(next.begin(), next.end());
-        next.erase(std::unique(next.begin(), next.end()), next.end());
-        return next;
-    }
-    // Time may pass unseen.
-    void close() {
-        direct_ = nodes_.size();
-        std::vector<std::uint32_t> seen = nodes_;
-        std::sort(seen.begin(), seen.end());
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            const std::uint32_t n = nodes_[i];
-            for (std::uint64_t e = p_.starts[n]; e < p_.starts[n + 1]; ++e) {
-                const std::uint32_t to = p_.targets[e];
-                if (p_.label(e) != proof::Edge::kPass) {
-                    continue;
-                }
-                const auto at = std::lower_bound(seen.begin(), seen.end(), to);
-                if (at == seen.end() || *at != to) {
-                    seen.insert(at, to);
-                    nodes_.push_back(to);
-                }
-            }
-        }
-    }
-
-    const Hunt& hunt_;
-    const Product& p_;
-    const std::vector<std::uint32_t>& distance_;
-    std::vector<std::uint32_t> nodes_;
-    std::size_t direct_ = 0;  // so many of them without time passing
-};
-
-// One choice of an attempt: the answers in the order in which they are tried.
-struct Decision {
-    std::vector<std::int64_t> answers;
-    std::size_t taken = 0;
-};
-
-// Takes what leads nearest, or, on a later attempt, what was decided to be tried instead.
-class GuidedChooser final : public net::Chooser {
- public:
-    GuidedChooser(std::vector<Decision>& decisions, bool longest, bool coincide)
-        : decisions_(decisions), longest_(longest), coincide_(coincide) {}
-    const Track* track = nullptr;
-    std::vector<std::int64_t> answers;
-
-    std::int64_t choose(const net::Choice& choice) override {
-        if (at_ == decisions_.size()) {
-            decisions_.push_back(options_of(choice));
-        }
-        const Decision& d = decisions_[at_++];
-        std::int64_t answer = d.answers[d.taken];
-        // The same choice is asked again in the same order, but a host may have changed its mind.
-        if (choice.options != 0) {
-            answer = std::clamp<std::int64_t>(answer, 0, choice.options - 1);
-        } else {
-            answer = std::clamp(answer, choice.low.ticks, choice.high.ticks);
-        }
-        answers.push_back(answer);
-        return answer;
-    }
-    std::size_t used() const { return at_; }
-
- private:
-    Decision options_of(const net::Choice& choice) const {
-        Decision d;
-        if (choice.options == 0) {
-            const std::int64_t drawn =
-                std::clamp(choice.drawn.ticks, choice.low.ticks, choice.high.ticks);
-            d.answers = {choice.low.ticks, choice.high.ticks, drawn};
-            const bool continuous =
-                choice.kind == net::ChoiceKind::kDuration || choice.kind == net::ChoiceKind::kDelay;
-            if (continuous && !coincide_ && choice.low != choice.high) {
-                // Never the same twice, nor an end of the support.
-                const auto aside = static_cast<std::int64_t>(7919 * (at_ + 1));
-                const std::int64_t high = choice.high.ticks;
-                d.answers = {drawn};
-                if (high - choice.low.ticks > 2 * aside) {
-                    d.answers.push_back(choice.low.ticks + aside);
-                    const std::int64_t late = std::min(high, drawn < high / 4 ? drawn * 4 : high);
-                    d.answers.push_back(late - aside);
-                }
-                for (std::int64_t& a : d.answers) {
-                    a = std::clamp(a, choice.low.ticks, high);
-                }
-            } else if (choice.high == SimTime::never()) {
-                d.answers = {drawn, choice.low.ticks};
-            } else if (longest_) {
-                std::swap(d.answers[0], d.answers[1]);
-            }
-            std::vector<std::int64_t> once;
-            for (const std::int64_t a : d.answers) {
-                if (std::find(once.begin(), once.end(), a) == once.end()) {
-                    once.push_back(a);
-                }
-            }
-            d.answers = std::move(once);
-            return d;
-        }
-        std::vector<std::pair<std::uint32_t, std::int64_t>> ranked;
-        for (std::uint32_t i = 0; i < choice.options; ++i) {
-            const bool tie = choice.kind == net::ChoiceKind::kTie && track != nullptr &&
-                             i < choice.transitions.size();
-            ranked.push_back({tie ? track->score(choice.transitions[i]) : 0, i});
-        }
-        std::stable_sort(ranked.begin(), ranked.end(),
-                         [](const auto& a, const auto& b) { return a.first < b.first; });
-        for (const auto& [score, option] : ranked) {
-            d.answers.push_back(option);
-        }
-        return d;
-    }
-
-    std::vector<Decision>& decisions_;
-    const bool longest_, coincide_;
-    std::size_t at_ = 0;
-};
 
 // How long to wait for a firing: a thousand rounds of what is scheduled again and again.
 SimTime patience_of(const net::Net& net) {
@@ -285,10 +76,14 @@ class Attempt {
         if (says == Says::kBroken && wants(Target::kBroken)) {
             return found(0);
         }
-        if (hopeless()) {
-            return found(0);
+        if (target_ == Target::kLinear) {
+            linear_.emplace(*hunt_.finding->game, *hunt_.obligation, *hunt_.reader, player_);
+            linear_->begin();
         }
-        remember();
+        if (decided()) {
+            return goes_on();
+        }
+        went_round();
         SimTime maybe_at = player_.now();
         while (player_.firings() < firings) {
             if ((player_.firings() & 63) == 0 &&
@@ -301,13 +96,20 @@ class Attempt {
             }
             actors_.listener.occurred.clear();
             run::Stop stop = run::Stop::kLimit;
-            if (hunt_.obligation->when_settled) {
+            if (hunt_.obligation->when_settled || linear_) {
                 stop = player_.step({.until = player_.now()});
+                if (linear_) {
+                    linear_->occurred(actors_.listener.occurred);
+                }
+                if (stop == run::Stop::kLimit && linear_) {
+                    linear_->time_passes();
+                }
                 if (stop == run::Stop::kLimit && watch_.time_passes() == Says::kBroken &&
                     target_ != Target::kFires) {
                     return found(player_.firings());
                 }
             }
+            const std::size_t before = linear_ ? actors_.listener.occurred.size() : 0;
             if (stop == run::Stop::kLimit) {
                 stop = player_.step(limits(maybe, maybe_at));
             }
@@ -326,6 +128,11 @@ class Attempt {
                 }
                 break;
             }
+            if (stop != run::Stop::kNone &&
+                watch_.occurred(actors_.listener.occurred) == Says::kBroken &&
+                wants(Target::kBroken)) {
+                return found(player_.firings());
+            }
             if (stop == run::Stop::kDead || stop == run::Stop::kFinal) {
                 if (script == nullptr && track_ != nullptr && push_wanted(false)) {
                     continue;
@@ -341,6 +148,10 @@ class Attempt {
             steps_.push_back(
                 {player_.now(), std::string(theatre_.net->transition(player_.last()).path)});
             const Says late_or_not = watch_.fired(actors_.listener.occurred);
+            if (linear_) {
+                linear_->occurred(std::span(actors_.listener.occurred).subspan(before));
+                linear_->fired();
+            }
             if (track_ != nullptr) {
                 track_->fired(player_.last().value);
                 if (track_->lost()) {
@@ -360,8 +171,8 @@ class Attempt {
             if (target_ == Target::kFires && player_.last().value == hunt_.finding->transition) {
                 return found(player_.firings());
             }
-            if (hopeless()) {
-                return found(player_.firings());
+            if (decided()) {
+                return goes_on();
             }
             if (script == nullptr && track_ != nullptr && hunt_.finding->product.complete &&
                 track_->distance() == kFar && !maybe && target_ != Target::kTooLong) {
@@ -412,7 +223,7 @@ class Attempt {
         if (watch_.ended(player_.now(), true) == Says::kBroken) {
             return found(player_.firings());
         }
-        if (target_ == Target::kRest && !final_marking &&
+        if ((target_ == Target::kRest || target_ == Target::kHopeless) && !final_marking &&
             (hunt_.obligation->kind == net::RuleKind::kDeadlockFree ||
              hunt_.obligation->kind == net::RuleKind::kEnds)) {
             return found(player_.firings());
@@ -421,20 +232,146 @@ class Attempt {
         return false;
     }
 
-    // Of all nodes that the run may be in, none leads to what should stay possible.
-    bool hopeless() const {
-        return target_ == Target::kHopeless && track_ != nullptr && !track_->lost() &&
-               track_->all_targets();
+    // However it goes on, or however long what takes, the rule is broken: of all nodes that the run
+    // may be in each is one of those that settle it.
+    bool decided() const {
+        if (track_ == nullptr || track_->lost()) {
+            return false;
+        }
+        if (target_ == Target::kHopeless) {
+            return track_->hopeless();
+        }
+        if (target_ != Target::kLinear) {
+            return false;
+        }
+        const std::vector<std::uint32_t> here = track_->here();
+        return std::all_of(here.begin(), here.end(), [&](std::uint32_t n) {
+            const std::uint32_t moment = hunt_.finding->product.state[n];
+            const auto& cases = linear_->cases();
+            return std::all_of(cases.begin(), cases.end(), [&](const auto& states) {
+                return std::any_of(states.begin(), states.end(), [&](std::uint32_t q) {
+                    return hunt_.finding->game->wins(moment, q);
+                });
+            });
+        });
     }
 
-    void remember() {
-        if (target_ == Target::kEndless && !theatre_.auto_durations) {
-            went_round();
+    // Decided; where that is about what happens for ever, the run goes on until it has gone round.
+    bool goes_on() {
+        found(player_.firings());
+        const net::RuleKind kind = hunt_.obligation->kind;
+        if (kind != net::RuleKind::kLeadsTo && kind != net::RuleKind::kEnds &&
+            kind != net::RuleKind::kFormula) {
+            return true;
         }
+        constexpr int kMost = 400;
+        struct Visit {
+            std::size_t steps, moments;
+        };
+        std::map<std::vector<std::uint32_t>, std::vector<Visit>> met;
+        std::size_t kept = steps_.size(), set = 0;
+        bool shown = !linear_;
+        // Notes where it is; true: it has been here before, and what it did since will do for ever.
+        const auto comes_back = [&] {
+            std::vector<std::uint32_t> key = track_->here();
+            if (linear_) {
+                for (const std::vector<std::uint32_t>& states : linear_->cases()) {
+                    key.push_back(kFar);
+                    key.insert(key.end(), states.begin(), states.end());
+                }
+            }
+            std::vector<Visit>& visits = met[std::move(key)];
+            for (const Visit& v : visits) {
+                if (!linear_ || linear_->breaks(v.moments + 1)) {
+                    witness.lasso_from = static_cast<std::uint32_t>(v.steps);
+                    return true;
+                }
+            }
+            visits.push_back({steps_.size(), linear_ ? linear_->moments() : 0});
+            return false;
+        };
+        const auto narrow = [&] {
+            if (!linear_) {
+                return;
+            }
+            track_->narrow([&](std::uint32_t n) {
+                const auto& cases = linear_->cases();
+                return std::any_of(cases.begin(), cases.end(), [&](const auto& states) {
+                    return std::binary_search(states.begin(), states.end(),
+                                              hunt_.finding->product.monitor[n]);
+                });
+            });
+            const auto& ranks = hunt_.finding->game->ranks;
+            const std::uint32_t rank = track_->distance();
+            track_->follow(ranks[set]);
+            if (rank == 0 || track_->distance() >= last_rank_) {
+                set = (set + 1) % ranks.size();  // the next set in turn
+                track_->follow(ranks[set]);
+            }
+            last_rank_ = track_->distance();
+        };
+        narrow();
+        comes_back();
+        for (int i = 0; i < kMost; ++i) {
+            actors_.listener.occurred.clear();
+            run::Stop stop = player_.step({.until = player_.now()});
+            const std::size_t before = actors_.listener.occurred.size();
+            if (linear_) {
+                linear_->occurred(actors_.listener.occurred);
+            }
+            if (stop == run::Stop::kLimit) {
+                if (linear_) {
+                    linear_->time_passes();
+                }
+                stop = player_.step(limits(false, {}));
+            }
+            for (const std::uint32_t e : actors_.listener.occurred) {
+                track_->occurred(e);
+            }
+            if (stop == run::Stop::kDead || stop == run::Stop::kFinal) {
+                if (linear_) {
+                    linear_->occurred(std::span(actors_.listener.occurred).subspan(before));
+                    linear_->time_passes();
+                    shown = linear_->breaks(linear_->moments());
+                }
+                break;
+            }
+            if (stop != run::Stop::kNone) {
+                break;
+            }
+            steps_.push_back(
+                {player_.now(), std::string(theatre_.net->transition(player_.last()).path)});
+            if (linear_) {
+                linear_->occurred(std::span(actors_.listener.occurred).subspan(before));
+                linear_->fired();
+            }
+            track_->fired(player_.last().value);
+            if (!decided()) {
+                break;
+            }
+            kept = steps_.size();
+            narrow();
+            if (comes_back()) {
+                shown = true;
+                break;
+            }
+        }
+        if (!shown) {
+            reason = "the way on could not be shown";
+            return false;
+        }
+        steps_.resize(kept);
+        witness.steps = steps_;
+        if (kept > 0) {
+            witness.until = std::max(witness.until, steps_.back().at);
+        }
+        return true;
     }
-    // The same state again, and something owed all the time between.
+
+    // The same state again, something owed all the time between, and nothing that only the
+    // performance decides.
     bool went_round() {
-        if (target_ != Target::kEndless || theatre_.auto_durations) {
+        if (target_ != Target::kEndless) {
             return false;
         }
         const bool owes =
@@ -447,11 +384,14 @@ class Attempt {
         for (const std::uint32_t s : watch_.states()) {
             state.push_back(static_cast<std::uint8_t>(s));
         }
-        const auto [at, is_new] = seen_.try_emplace(std::move(state), player_.firings());
-        if (!is_new) {
-            witness.lasso_from = static_cast<std::uint32_t>(at->second);
+        const Seen now{player_.firings(), actors_.counting.decided};
+        const auto [at, is_new] = seen_.try_emplace(std::move(state), now);
+        if (is_new || at->second.decided != now.decided) {
+            at->second = now;
+            return false;
         }
-        return !is_new;
+        witness.lasso_from = static_cast<std::uint32_t>(at->second.firings);
+        return true;
     }
 
     bool figures() {
@@ -491,7 +431,12 @@ class Attempt {
     Target target_ = Target::kBroken;
     bool fault_ = false;
     std::vector<Witness::Step> steps_;
-    std::map<std::vector<std::uint8_t>, std::uint64_t> seen_;
+    struct Seen {
+        std::uint64_t firings = 0, decided = 0;
+    };
+    std::map<std::vector<std::uint8_t>, Seen> seen_;
+    std::optional<LinearWatch> linear_;
+    std::uint32_t last_rank_ = 0;
 };
 
 }  // namespace
@@ -580,7 +525,7 @@ Replayed replay(const Theatre& theatre, const Witness& witness, const Hunt& hunt
     net::ScriptedChooser chooser(witness.choices);
     std::optional<Track> track;
     std::vector<std::uint32_t> none;
-    if (hunt.finding->target == Target::kHopeless) {
+    if (hunt.finding->target == Target::kHopeless || hunt.finding->target == Target::kLinear) {
         none.assign(hunt.finding->product.size(), 0);
         track.emplace(hunt, none);
     }
@@ -607,7 +552,7 @@ Replayed replay(const Theatre& theatre, const Witness& witness, const Hunt& hunt
 }
 
 std::optional<Witness> witness_of(const Theatre& theatre, const proof::Script& script,
-                                  std::string* trouble) {
+                                  std::string* trouble, const std::vector<std::uint32_t>& rounds) {
     Witness w;
     w.net_hash = theatre.net->hash();
     w.seed = theatre.seed;
@@ -618,12 +563,16 @@ std::optional<Witness> witness_of(const Theatre& theatre, const proof::Script& s
         w.events.push_back({e.at, std::string(theatre.net->event(e.event).path)});
         events.push_back({e.at, e.event});
     }
-    for (const proof::Script::Firing& f : script.firings) {
-        w.steps.push_back({f.at, std::string(theatre.net->transition(f.transition).path)});
-    }
     net::ScriptedChooser chooser(w.choices);
     Performers actors(theatre, chooser);
     actors.player->schedule(events);
+    struct Round {
+        std::uint32_t firings = 0;
+        SimTime at;
+        std::uint64_t decided = 0;
+        std::vector<std::uint8_t> state;
+    };
+    std::vector<Round> ended;
     for (const proof::Script::Firing& f : script.firings) {
         const run::Stop stop = actors.player->step();
         if (stop != run::Stop::kNone || actors.player->last() != f.transition ||
@@ -632,6 +581,24 @@ std::optional<Witness> witness_of(const Theatre& theatre, const proof::Script& s
                                               : "the player fires something else";
             return std::nullopt;
         }
+        w.steps.push_back({f.at, std::string(theatre.net->transition(f.transition).path)});
+        const auto firings = static_cast<std::uint32_t>(w.steps.size());
+        if (std::find(rounds.begin(), rounds.end(), firings) == rounds.end()) {
+            continue;
+        }
+        Round now{firings, f.at, actors.counting.decided, state_of(*theatre.net, *actors.player)};
+        for (const Round& before : ended) {
+            if (before.state == now.state && before.at < now.at && before.decided == now.decided) {
+                w.lasso_from = before.firings;
+                w.until = f.at;
+                return w;
+            }
+        }
+        ended.push_back(std::move(now));
+    }
+    if (!rounds.empty()) {
+        *trouble = "it does not come back to the very same state";
+        return std::nullopt;
     }
     return w;
 }

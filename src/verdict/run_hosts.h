@@ -30,6 +30,27 @@ class ShortestHost final : public net::MovementHost {
     const std::vector<proof::TickRange>& actions_;
 };
 
+// Passes everything on, and counts what the performance decides: durations and events that only it
+// knows.
+class CountingHost final : public net::MovementHost {
+ public:
+    net::MovementHost* performer = nullptr;
+    std::uint64_t decided = 0;
+
+    SimTime begin(net::ActionIndex action, net::ActivityIndex activity, SimTime at,
+                  SimTime duration, std::span<const std::int64_t> attributes) override {
+        decided += duration.ticks < 0 ? 1 : 0;
+        return performer->begin(action, activity, at, duration, attributes);
+    }
+    std::span<const net::RaisedEvent> raised(net::ActivityIndex activity) override {
+        const std::span<const net::RaisedEvent> events = performer->raised(activity);
+        decided += events.empty() ? 0 : 1;
+        return events;
+    }
+    void cut(net::ActivityIndex activity, SimTime at) override { performer->cut(activity, at); }
+    void left(net::ActivityIndex activity, SimTime at) override { performer->left(activity, at); }
+};
+
 class EventListener final : public run::LogSink {
  public:
     void fired(SimTime, net::TransitionIndex) override {}
@@ -47,11 +68,12 @@ struct Performers {
         options.sink = &listener;
         options.record = true;
         options.firings_per_instant = theatre.firings_per_instant;
-        options.host = &shortest;
+        counting.performer = &shortest;
         if (theatre.scene != nullptr) {
             stage.emplace(theatre.scene->play);
-            options.host = &*stage;
+            counting.performer = &*stage;
         }
+        options.host = &counting;
         player.emplace(*theatre.net, options);
     }
     Performers(const Performers&) = delete;
@@ -60,6 +82,7 @@ struct Performers {
     EventListener listener;
     ShortestHost shortest;
     std::optional<stage::Stage> stage;
+    CountingHost counting;
     std::optional<run::Player> player;
 };
 

@@ -151,6 +151,19 @@ RunWatch::Says RunWatch::time_passes() {
     return moment(deferred_label_, deferred_start_, deferred_at_);
 }
 
+RunWatch::Says RunWatch::occurred(std::span<const std::uint32_t> events) {
+    for (const std::uint32_t e : events) {
+        if (o_.when_settled) {
+            break;
+        }
+        const Says says = moment(0x80000000u | e, false, player_.now());
+        if (says != Says::kGood) {
+            return says;
+        }
+    }
+    return Says::kGood;
+}
+
 RunWatch::Says RunWatch::fired(std::span<const std::uint32_t> events) {
     const Says overdue = late(player_.now());
     if (overdue == Says::kBroken) {
@@ -165,11 +178,9 @@ RunWatch::Says RunWatch::fired(std::span<const std::uint32_t> events) {
     }
     before_may_ = may_;
     before_must_ = must_;
-    for (const std::uint32_t e : events) {
-        const Says says = moment(0x80000000u | e, false, player_.now());
-        if (says != Says::kGood) {
-            return says;
-        }
+    const Says says = occurred(events);
+    if (says != Says::kGood) {
+        return says;
     }
     reader_.read(player_, may_, must_);
     return moment(player_.last().value, false, player_.now());

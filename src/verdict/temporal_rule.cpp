@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "temporal_rule.h"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "linear_rule.h"
+#include "moments.h"
 #include "puppetri/proof/ctl.h"
 #include "puppetri/proof/ltl.h"
 
@@ -10,90 +14,140 @@ namespace puppetri::verdict {
 namespace {
 
 using Kind = Finding::Kind;
+using proof::Temporal;
 
-// Statements about figures hold at most where one atom does, and for certain where another does:
-// they get the bits of both.
-proof::Graph with_bounds(const proof::Graph& graph, const Obligation& o) {
-    proof::Graph out = graph;
-    const std::uint64_t words = (graph.atoms.atoms + 63) / 64;
-    for (std::size_t i = 0; i < o.may_atoms.size(); ++i) {
-        const std::uint32_t may = o.may_atoms[i], must = o.must_atoms[i];
-        for (std::uint32_t s = 0; may != must && s < graph.size(); ++s) {
-            const std::uint64_t bit = std::uint64_t{1} << (may % 64);
-            std::uint64_t& word = out.atoms.must[s * words + may / 64];
-            word = graph.atoms.must_hold(s, must) ? word | bit : word & ~bit;
+void take(Finding& f, const std::optional<proof::Lasso>& lasso, const Moments& moments) {
+    if (!lasso) {
+        return;
+    }
+    const auto append = [&](const proof::Path& path) {
+        for (const std::uint32_t e : path) {
+            if (moments.origin[e] != Moments::kStands) {
+                f.path.push_back(moments.origin[e]);
+            }
+        }
+    };
+    f.shown = true;
+    append(lasso->stem);
+    const auto stem = static_cast<std::uint32_t>(f.path.size());
+    append(lasso->loop);
+    if (f.path.size() > stem) {
+        f.loop_from = stem;
+    }
+}
+
+// Under how many negations path quantifiers stand: an even number only, or an odd one only.
+struct Polarity {
+    bool even = false, odd = false;
+};
+Polarity polarity_of(const Temporal& formula) {
+    using Op = Temporal::Op;
+    std::vector<Polarity> of(formula.nodes.size());
+    of.back().even = true;
+    Polarity out;
+    for (std::size_t i = formula.nodes.size(); i-- > 0;) {
+        const Temporal::Node& n = formula.nodes[i];
+        const auto hand_down = [&](std::uint32_t to, bool flips) {
+            of[to].even = of[to].even || (flips ? of[i].odd : of[i].even);
+            of[to].odd = of[to].odd || (flips ? of[i].even : of[i].odd);
+        };
+        switch (n.op) {
+            case Op::kFalse:
+            case Op::kTrue:
+            case Op::kAtom:
+                break;
+            case Op::kNot:
+                hand_down(n.a, true);
+                break;
+            case Op::kAnd:
+            case Op::kOr:
+                hand_down(n.a, false);
+                hand_down(n.b, false);
+                break;
+            default:
+                out.even = out.even || of[i].even;
+                out.odd = out.odd || of[i].odd;
+                hand_down(n.a, false);
+                if (n.op == Op::kSomeUntil) {
+                    hand_down(n.b, false);
+                }
         }
     }
     return out;
 }
 
-void take(Finding& f, const std::optional<proof::Lasso>& lasso) {
-    if (!lasso) {
-        return;
+std::vector<std::uint32_t> numbers(std::size_t count) {
+    std::vector<std::uint32_t> out(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        out[i] = i;
     }
-    f.path = lasso->stem;
-    if (!lasso->loop.empty()) {
-        f.loop_from = static_cast<std::uint32_t>(f.path.size());
-        f.path.insert(f.path.end(), lasso->loop.begin(), lasso->loop.end());
-    }
+    return out;
 }
 
 }  // namespace
 
-Finding check_temporal(const net::Net&, const Obligation& o, const GraphView& view,
+Finding check_temporal(const net::Net& net, const Obligation& o, const GraphView& view,
                        const proof::Budget& budget) {
     Finding f;
-    if (o.speaks_of_steps) {
-        f.reason = "temporal formulas about firings and occurrences have no method";
-        return f;
-    }
-    if (o.temporal->logic == proof::Temporal::Logic::kNeither) {
+    if (o.temporal->logic == Temporal::Logic::kNeither) {
         f.reason = "it mixes branching and linear time";
         return f;
     }
-    proof::Graph own;
-    const proof::Graph* graph = &view.timed->graph;
+    const proof::Graph& states = view.timed->graph;
     // Graphs of many behaviours at once may part a step in two, or join two.
-    if (o.temporal->has_next && !(view.concrete && graph->exact)) {
+    if (o.temporal->has_next && !(view.concrete && states.exact)) {
         f.reason = "a formula with `next` asks for single steps, which only exact states have";
         return f;
     }
-    if (o.may_atoms != o.must_atoms) {
-        own = with_bounds(*graph, o);
-        graph = &own;
+    Moments moments = moments_of(*view.timed, o, false);
+    const proof::Graph& graph = moments.graph;
+    const std::vector<std::uint32_t> atoms = numbers(o.operands.size());
+    constexpr std::uint64_t kMostEdges = 40'000'000;
+    const std::string not_all =
+        view.timed->not_over.empty()
+            ? "the method does not see every run"
+            : "the method does not see every run: " + view.timed->not_over.front();
+    if (o.temporal->logic == Temporal::Logic::kLtl && !graph.exact) {
+        return check_linear(net, o, view, budget, kMostEdges);
     }
-    if (o.temporal->logic == proof::Temporal::Logic::kLtl) {
-        const proof::LtlAnswer answer = proof::check_ltl(*graph, *o.temporal, o.may_atoms, budget);
-        if (answer.holds == proof::Truth::kTrue) {
+    if (o.temporal->logic == Temporal::Logic::kLtl) {
+        const proof::LtlAnswer answer = proof::check_ltl(graph, *o.temporal, atoms, budget);
+        if (answer.holds == proof::Truth::kTrue && graph.over) {
             f.kind = Kind::kHolds;
             f.force = Force::kEveryChoice;
-        } else if (answer.holds == proof::Truth::kFalse && graph->exact) {
+        } else if (answer.holds == proof::Truth::kFalse && graph.exact) {
             f.kind = Kind::kRefuted;
             f.reason = "a run does not satisfy the formula";
-            take(f, answer.counterexample);
+            take(f, answer.counterexample, moments);
         } else {
             f.reason = answer.ended != proof::Ended::kDone
                            ? std::string("not all was looked at: ") + proof::name_of(answer.ended)
+                       : answer.holds == proof::Truth::kTrue
+                           ? not_all
                            : "a path does not satisfy the formula, but it may be no run";
         }
         return f;
     }
-    // A class of states has several futures: branching time needs single states, or paths that only
-    // bound what can be.
-    if (!view.concrete && graph->exact) {
-        f.reason = "nothing that branches may be concluded from classes of states";
-        return f;
-    }
-    proof::CtlChecker checker(*graph);
-    const proof::Truth truth = checker.holds(*o.temporal, o.may_atoms, budget);
-    if (truth == proof::Truth::kTrue) {
+    // A class of states has several futures: its paths only bound what each of them can do.
+    moments.graph.exact = graph.exact && view.concrete;
+    proof::CtlChecker checker(graph, &moments.waits);
+    const proof::Truth truth = checker.holds(*o.temporal, atoms, budget);
+    // Where runs are missing, what some run does is still shown by a run that is there.
+    const Polarity polarity = polarity_of(*o.temporal);
+    if (truth == proof::Truth::kTrue && (graph.over || (graph.exact && !polarity.odd))) {
         f.kind = Kind::kHolds;
-    } else if (truth == proof::Truth::kFalse && view.concrete && graph->exact) {
+    } else if (truth == proof::Truth::kFalse && graph.exact && (graph.over || !polarity.even)) {
         f.kind = Kind::kRefuted;
         f.reason = "the formula does not hold at the start";
-        take(f, checker.evidence(*o.temporal, o.may_atoms, budget));
+        take(f,
+             o.temporal->logic == Temporal::Logic::kState
+                 ? std::optional(proof::Lasso{})
+                 : checker.evidence(*o.temporal, atoms, budget),
+             moments);
     } else {
-        f.reason = "this method sees neither that it holds nor that it does not";
+        f.reason = truth == proof::Truth::kUnknown || graph.over
+                       ? "this method sees neither that it holds nor that it does not"
+                       : not_all;
     }
     return f;
 }

@@ -5,8 +5,9 @@
 //
 // Three-valued: `must` are states where the formula holds for certain, `may` those where it is not
 // excluded. On exact graphs without cuts both are one set. On over-approximations no path is known
-// to be a run, so E-formulas are never certain beyond what holds at once, and A-formulas are never
-// excluded but by that: PROVED and REFUTED stay sound for every mixture of quantifiers.
+// to be a run, so E-formulas are certain only where the A-formula is (every state has some run),
+// and A-formulas are never excluded but by what holds at once: PROVED and REFUTED stay sound for
+// every mixture of quantifiers.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "puppetri/proof/graph.h"
 #include "puppetri/proof/graph_algorithms.h"
 #include "puppetri/proof/temporal.h"
+#include "puppetri/proof/timed_graph.h"
 
 namespace puppetri::proof {
 
@@ -27,7 +29,9 @@ namespace puppetri::proof {
 class CtlChecker {
  public:
     // The graph must live longer.
-    explicit CtlChecker(const Graph& graph) : graph_(graph) {}
+    // waits: paths that wait for ever for what is over after a finite time, or on which events come
+    // without end in one instant, are none (null: nothing is known of that).
+    explicit CtlChecker(const Graph& graph, const Waits* waits = nullptr);
     // With the predecessors of the graph, made by somebody else for several checkers.
     CtlChecker(const Graph& graph, const net::Rows<std::uint32_t>& backwards)
         : graph_(graph), given_(&backwards) {}
@@ -60,8 +64,10 @@ class CtlChecker {
     bool cut(std::uint32_t state) const;
     StateBits some_next(const StateBits& a);
     StateBits some_globally(const StateBits& a, bool past_cuts);
+    StateBits just_globally(const StateBits& a, const StateBits& cuts);
 
     const Graph& graph_;
+    const Waits* waits_ = nullptr;
     const net::Rows<std::uint32_t>* given_ = nullptr;
     net::Rows<std::uint32_t> predecessors_;  // empty until needed, or given
 };

@@ -56,6 +56,11 @@ struct Graph {
 
     std::uint32_t size() const { return edges.size(); }
     bool dead(std::uint32_t s) const { return edges.starts[s] == edges.starts[s + 1]; }
+    // Time may pass along this edge, as far as edges show it.
+    bool lets_time_pass(std::uint32_t edge) const {
+        return edges.items[edge].label == Edge::kPass ||
+               (!high_ticks.empty() && high_ticks[edge] > 0);
+    }
 };
 
 }  // namespace puppetri::proof

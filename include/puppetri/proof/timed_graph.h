@@ -64,7 +64,19 @@ struct Waits {
     bool waits(std::uint32_t state, std::uint32_t kind) const { return bit(waiting, state, kind); }
     bool stirs(std::uint32_t edge, std::uint32_t kind) const { return bit(stirred, edge, kind); }
 
+    // Per event, also where kinds is 0. rare: no firing raises it, so that it occurs only finitely
+    // often in one instant; a cycle without kPass edges that needs it is no run. by_outside: nobody
+    // but the outside makes it occur, which need not.
+    std::vector<std::uint8_t> rare, by_outside;
+    bool is_rare(const Edge& edge) const { return marks(rare, edge); }
+    bool is_by_outside(const Edge& edge) const { return marks(by_outside, edge); }
+
  private:
+    static bool marks(const std::vector<std::uint8_t>& events, const Edge& edge) {
+        const std::uint32_t e = edge.label & ~Edge::kEvent;
+        return edge.label != Edge::kPass && (edge.label & Edge::kEvent) != 0 && e < events.size() &&
+               events[e] != 0;
+    }
     bool bit(const std::vector<std::uint64_t>& rows, std::uint32_t row, std::uint32_t k) const {
         return ((rows[std::size_t{row} * ((kinds + 63) / 64) + k / 64] >> (k & 63)) & 1) != 0;
     }

@@ -5,6 +5,7 @@
 // (SEMANTICS.md, section 8).
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ struct GraphView {
     std::vector<std::int64_t> at_most;
 };
 
+struct LinearGame;  // src/verdict/linear_rule.h
+
 struct Finding {
     enum class Kind : std::uint8_t {
         kHolds,       // proved by this graph
@@ -39,8 +42,9 @@ struct Finding {
         kBroken,    // the monitor says so
         kRest,      // nothing happens any more, in no final marking (or while something is owed)
         kEndless,   // it goes round for ever inside `targets`
-        kHopeless,  // what should stay possible is out of reach: all nodes that it may be in are
-                    // targets
+        kHopeless,  // what should stay possible, or has to happen, is out of reach: all nodes that
+                    // it may be in are in `certain`
+        kLinear,    // whatever lasts how long, it can go on so that a formula of linear time fails
         kTooLong,   // more time passes than allowed; `targets` is where that may begin
         kFires,     // of quasi_live: the transition `transition` fires
     };
@@ -49,12 +53,15 @@ struct Finding {
     Force force = Force::kPlain;
     std::string reason;  // of kUnknown: why; else in words what was found
     std::vector<std::string> notes;
-    Product product;  // of kSuspect
-    Nodes targets;
+    Product product;                         // of kSuspect
+    Nodes targets;                           // where to look
+    Nodes certain;                           // of kHopeless
+    std::shared_ptr<const LinearGame> game;  // of kLinear; holds what `product` points to
     std::uint32_t transition = ~std::uint32_t{0};
     std::string subject;  // who freezes
-    // Of kRefuted: edges from the start, and from which of them on it goes round (kFar: it does
-    // not).
+    // Of kRefuted, if one run shows it: edges from the start, and from which of them on it goes
+    // round (kFar: it does not).
+    bool shown = false;
     std::vector<std::uint32_t> path;
     std::uint32_t loop_from = kFar;
 };

@@ -89,10 +89,8 @@ struct Obligation {
     bool about_figures = false;  // host atoms were lowered: only the stage can refute it
     std::vector<std::uint32_t> transitions;  // of live, quasi_live: never empty
     std::vector<std::string> subjects;       // of nobody_freezes: per operand, if known
-    // Of kFormula: taken apart, with the atoms that hold if each of its atoms may, or must.
+    // Of kFormula: taken apart; operand i is its atom i.
     std::optional<proof::Temporal> temporal;
-    std::vector<std::uint32_t> may_atoms, must_atoms;
-    bool speaks_of_steps = false;  // an atom is a firing or an occurrence: no method here
 };
 
 // Operands about places of `bounded` become "more than k tokens". `host` may be null: then host

@@ -53,8 +53,9 @@ Product make_product(const proof::Graph& graph, const Monitor* monitor, std::uin
 using Nodes = std::vector<std::uint8_t>;  // per node: in the set or not
 
 // Nodes of cycles that stay in `open`, without edges in `left_out` (per product edge; may be
-// empty). Cycles on which something of one kind waits for ever, though its time is finite, are none
-// (`waits` may be null: then nothing is known of that).
+// empty). Cycles on which something of one kind waits for ever, though its time is finite, or on
+// which events come without end in one instant, are none (`waits` may be null: then nothing is
+// known of that).
 // Gives  one strongly connected component, or nothing.
 std::optional<std::vector<std::uint32_t>> endless(const Product& product, const Nodes& open,
                                                   const std::vector<std::uint8_t>& left_out,
@@ -74,10 +75,12 @@ std::optional<std::int64_t> longest_stay(const Product& product, const Nodes& op
 
 // The number of edges from each node to the nearest node of the set, or kFar.
 inline constexpr std::uint32_t kFar = ~std::uint32_t{0};
-std::vector<std::uint32_t> distances(const Product& product, const Nodes& targets);
+std::vector<std::uint32_t> distances(const Product& product, const Nodes& targets,
+                                     const std::vector<std::uint8_t>& left_out = {});
 // The same to edges of a set; left_out and such are per product edge.
 std::vector<std::uint32_t> distances_to_edges(const Product& product,
                                               const std::vector<std::uint8_t>& edges,
-                                              const Nodes& targets);
+                                              const Nodes& targets,
+                                              const std::vector<std::uint8_t>& left_out = {});
 
 }  // namespace puppetri::verdict

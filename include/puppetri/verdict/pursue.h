@@ -70,7 +70,12 @@ Replayed replay(const Theatre& theatre, const Witness& witness, const Hunt& hunt
 
 // A witness from the script of a path of an exact graph: played again, firing by firing. Nothing if
 // the player (the stage) does something else; `trouble` says what.
+// rounds: not empty: the path goes round and round, each time after so many firings. Then it counts
+// only if one of them ends where another has ended, in the very same state of the net, after some
+// time, and nothing has happened between that the performance decides: so it goes on for ever. The
+// witness ends there.
 std::optional<Witness> witness_of(const Theatre& theatre, const proof::Script& script,
-                                  std::string* trouble);
+                                  std::string* trouble,
+                                  const std::vector<std::uint32_t>& rounds = {});
 
 }  // namespace puppetri::verdict

@@ -46,6 +46,8 @@ class RunWatch {
 
     // Before any firing.
     Says begin();
+    // What occurred since the last firing, and no firing has followed.
+    Says occurred(std::span<const std::uint32_t> events);
     // After a firing; `events`: what occurred since the last moment.
     Says fired(std::span<const std::uint32_t> events);
     // Of rules read when settled, which need it: nothing more fires in this instant, and time goes
