@@ -23,13 +23,17 @@ class Branching final : public net::Chooser {
         return turns_[depth_++].taken;
     }
     // A sequence of answers is about to be asked for from its beginning.
-    void rewind() { depth_ = 0; }
+    void rewind() {
+        depth_ = 0;
+        chance_ = 1;
+    }
     // The next sequence. False: that was the last.
     bool next() {
         while (!turns_.empty() && turns_.back().taken + 1 >= turns_.back().options) {
             turns_.pop_back();
         }
         depth_ = 0;
+        chance_ = 1;
         if (turns_.empty()) {
             return false;
         }
@@ -51,11 +55,23 @@ class Branching final : public net::Chooser {
 
     std::int64_t choose(const net::Choice& choice) override {
         const std::int64_t answer = answer_to(choice);
+        if (choice.kind == net::ChoiceKind::kTie) {
+            double all = 0;
+            for (const double odds : choice.odds) {
+                all += odds;
+            }
+            chance_ *= choice.odds[static_cast<std::size_t>(answer)] / all;
+        } else if (choice.options != 0) {
+            chance_ /= choice.options;
+        }
         if (answers_ != nullptr) {
             answers_->push_back({choice.kind, choice.element, answer});
         }
         return answer;
     }
+    // The probability of the engine's answers since rewind(): ties by odds, tokens of `any` places
+    // evenly.
+    double chance() const { return chance_; }
     // Of which durations and delays not all were tried. (Intervals do not say which of the two they
     // are of.)
     const std::vector<std::pair<net::ChoiceKind, std::uint32_t>>& narrowed() const {
@@ -86,6 +102,7 @@ class Branching final : public net::Chooser {
     };
     std::vector<Turn> turns_;
     std::size_t depth_ = 0;
+    double chance_ = 1;
     std::vector<std::pair<net::ChoiceKind, std::uint32_t>> narrowed_;
     std::vector<Answer>* answers_ = nullptr;
 };

@@ -74,7 +74,7 @@ std::int64_t Driver::begin(Kind kind, std::uint32_t element, SimTime low, SimTim
         }
     }
     Begun b{kind, element, 0, least, most};
-    if (most > 0 && (least > 0 || chooser.pick(2) != 0)) {
+    if (most > 0 && (least > 0 || waits_always_ || chooser.pick(2) != 0)) {
         b.number = next_number_++;
     }
     begun_.push_back(b);

@@ -75,6 +75,8 @@ class Driver final : private net::Timekeeper, private net::MovementHost {
         chooses_ = chooses;
         context_ = context;
     }
+    // What may last no time does last some: durations are drawn from a continuum.
+    void waits_always() { waits_always_ = true; }
     const World& world() const { return *world_; }
     // How long movements took, in the order in which they began.
     std::vector<SimTime> movements;
@@ -95,7 +97,7 @@ class Driver final : private net::Timekeeper, private net::MovementHost {
     bool ask_outside(Step& out);
     bool raised_is_next() const;
 
-    bool settled_ = false, idle_ = false, from_outside_ = false;
+    bool settled_ = false, idle_ = false, from_outside_ = false, waits_always_ = false;
     std::int64_t next_number_ = 1;
     std::vector<Begun> begun_;
     std::vector<std::int64_t> passed_;

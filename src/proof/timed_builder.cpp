@@ -213,8 +213,10 @@ void TimedBuilder::begin() {
             g.atoms.must[w] &= g.atoms.must[std::size_t{s} * atoms_.words() + w];
         }
         if (several) {
-            row_.push_back(
-                {{Edge::kPass, s}, 0, 0, false, std::vector<std::uint64_t>(wait_words())});
+            Row r;
+            r.edge = {Edge::kPass, s};
+            r.stirs.resize(wait_words());
+            row_.push_back(std::move(r));
         }
     });
     if (several) {
@@ -253,6 +255,7 @@ void TimedBuilder::expand(std::uint32_t state) {
                 r.edge.target = add(0);
                 std::tie(r.low, r.high) = ticks(step);
                 r.coincidental = coincidental(d);
+                r.weight = weighs_ ? weight(d, step) : 0;
                 r.stirs.resize(wait_words());
                 if (wait_words() != 0) {
                     stirred(d, step, r.stirs.data());
@@ -289,6 +292,9 @@ void TimedBuilder::close_row() {
                            row_[i - 1].high == r.high;
         if (!again) {
             g.edges.items.push_back(r.edge);
+            if (weighs_) {
+                graph_.weights.push_back(r.weight);
+            }
             g.low_ticks.push_back(r.low);
             g.high_ticks.push_back(r.high);
             graph_.coincidental.push_back(r.coincidental ? 1 : 0);
@@ -296,6 +302,9 @@ void TimedBuilder::close_row() {
             continue;
         }
         graph_.coincidental.back() &= r.coincidental ? 1 : 0;
+        if (weighs_) {
+            graph_.weights.back() += r.weight;
+        }
         std::uint64_t* last =
             graph_.waits.stirred.data() + graph_.waits.stirred.size() - wait_words();
         for (std::uint32_t w = 0; w < wait_words(); ++w) {

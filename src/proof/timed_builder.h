@@ -84,6 +84,13 @@ class TimedBuilder {
         (void)driver;
         return false;
     }
+    // Of graphs that weigh_edges(): the rate or probability of the branch. Those of one edge add
+    // up.
+    virtual double weight(Driver& driver, const Driver::Step& step) {
+        (void)driver, (void)step;
+        return 1;
+    }
+    void weigh_edges() { weighs_ = true; }
     virtual void read_waits(Driver& driver, std::uint64_t* row) { (void)driver, (void)row; }
 
     const GraphRequest& request_;
@@ -95,6 +102,7 @@ class TimedBuilder {
     struct Row {
         Edge edge;
         std::int64_t low = 0, high = 0;
+        double weight = 0;
         bool coincidental = false;
         std::vector<std::uint64_t> stirs;
     };
@@ -106,6 +114,7 @@ class TimedBuilder {
     std::uint32_t wait_words() const { return (graph_.waits.kinds + 63) / 64; }
     Ended look();
 
+    bool weighs_ = false;
     Meter meter_;
     std::vector<std::uint8_t> buffer_;
     std::vector<Row> row_;

@@ -126,6 +126,9 @@ class TimedGraph {
     // Per edge (in the order of edges.items), of state classes: 1 if several durations have to end
     // at one instant, one of which is drawn from a distribution: probability 0 in real time.
     std::vector<std::uint8_t> coincidental;
+    // Per edge, of Markov chains (markov_net.h): a rate per second, or within an instant a
+    // probability. Empty elsewhere.
+    std::vector<double> weights;
 
     net::Counts tokens(std::uint32_t state, net::PlaceIndex place) const;
     Value datum(std::uint32_t state, net::DatumIndex datum) const;
