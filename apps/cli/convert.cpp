@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// `puppetri convert IN OUT`: a net from one format into another.
+// `puppetri convert IN OUT`: a net, or motion, from one format into another. Which of both, the
+// ending of IN says.
 #include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "commands.h"
+#include "convert_motion.h"
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/load_net.h"
 #include "puppetri/io/write_net.h"
@@ -17,6 +19,9 @@ namespace {
 
 int run(const Arguments& arguments) {
     const std::string in = arguments.text("in"), out = arguments.text("out");
+    if (io::clip_format_of(in)) {
+        return convert_motion(arguments);
+    }
     const std::string to = arguments.text("--to");
     const std::optional<io::NetFormat> format =
         to.empty() ? io::written_format_of(out) : io::written_format_named(to);
@@ -74,24 +79,36 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command convert_command() {
-    return {"convert",
-            "write a net in another format",
-            "Reads PNML, PIPE (.xml), TINA (.net) and the nets of scenes (.pup); coloured nets are "
-            "unfolded. Writes PNML,\n"
-            "PIPE, TINA, LoLA, Graphviz and scenes. What the other format has no words for is "
-            "refused, element by element;\n"
-            "with --lossy it is dropped, and each kind is told. The formats: docs/formats.\n\n"
-            "Examples:\n"
-            "  puppetri convert model.pnml model.net\n"
-            "  puppetri convert gspn.xml gspn.pup          to be run, proved and edited\n"
-            "  puppetri convert ball.pup ball.pnml --lossy the net without movements and times\n"
-            "  puppetri convert model.pnml - --to dot | dot -Tsvg > model.svg",
-            {{"in", Value::kText, "IN", "a net or a scene", true},
-             {"out", Value::kText, "OUT", "the file to write, or - for stdout", true},
-             {"--to", Value::kText, "FORMAT",
-              "pnml, pipe, tina, lola, dot or pup; else by the ending of OUT", false},
-             {"--lossy", Value::kFlag, "", "drop what the format has no words for", false}},
-            run};
+    Command command{
+        "convert",
+        "write a net or a motion in another format",
+        "Nets: reads PNML, PIPE (.xml), TINA (.net) and the nets of scenes (.pup); coloured nets "
+        "are unfolded. Writes PNML,\n"
+        "PIPE, TINA, LoLA, Graphviz and scenes. What the other format has no words for is "
+        "refused, element by element;\n"
+        "with --lossy it is dropped, and each kind is told.\n"
+        "Motion: reads keyframe files (.keys), BVH, glTF (.glb, .gltf, .vrm) and VRM animations "
+        "(.vrma). Writes .keys, .bvh,\n"
+        ".glb and .gltf: all clips, or those of --clip. A capture that is not in centimetres "
+        "needs --scale: of CMU 0.056444.\n"
+        "The formats: docs/formats.\n\n"
+        "Examples:\n"
+        "  puppetri convert model.pnml model.net\n"
+        "  puppetri convert gspn.xml gspn.pup          to be run, proved and edited\n"
+        "  puppetri convert ball.pup ball.pnml --lossy the net without movements and times\n"
+        "  puppetri convert model.pnml - --to dot | dot -Tsvg > model.svg\n"
+        "  puppetri convert take.bvh take.glb --scale 0.056444\n"
+        "  puppetri convert fox.glb run.keys --clip Run",
+        {{"in", Value::kText, "IN", "a net, a scene, or a file of motion", true},
+         {"out", Value::kText, "OUT", "the file to write; of nets also - for stdout", true},
+         {"--to", Value::kText, "FORMAT",
+          "nets: pnml, pipe, tina, lola, dot or pup; else by the ending of OUT", false},
+         {"--lossy", Value::kFlag, "", "nets: drop what the format has no words for", false}},
+        run};
+    for (Option& option : motion_options()) {
+        command.options.push_back(std::move(option));
+    }
+    return command;
 }
 
 }  // namespace puppetri::cli

@@ -512,13 +512,7 @@ class Reader {
 Checked<ClipFile> read_bvh(std::string_view text, const std::string& path,
                            const ClipReadOptions& options) {
     if (text.size() > options.largest_bytes) {
-        return Unexpected(Diagnostics{
-            {Severity::kError,
-             "too-large",
-             {path, 0, 0, 1},
-             "",
-             "the file is larger than " + std::to_string(options.largest_bytes) + " bytes",
-             "split it"}});
+        return Unexpected(too_large(path, options.largest_bytes));
     }
     return Reader(text, path, options.scale > 0 ? options.scale : 0.01).read();
 }

@@ -74,10 +74,11 @@ class Writer {
         std::vector<std::size_t> part_of(joints.size(), 0);
         for (std::size_t j = hips_first ? 1 : 0; j < joints.size(); ++j) {
             part_of[j] = parts_.size();
-            const bool first = parts_.empty();
-            parts_.push_back(
-                {j, {}, first || hips == figure::JointIndex{static_cast<std::uint32_t>(j)}});
-            if (!first) {
+            const bool first = parts_.empty() || !joints[j].parent.valid();
+            parts_.push_back({j, {}, first || hips.value == j || shifts(j)});
+            if (first) {
+                trees_.push_back(part_of[j]);
+            } else {
                 const std::size_t parent = joints[j].parent.value;
                 parts_[hips_first && parent == 0 ? 0 : part_of[parent]].children.push_back(
                     part_of[j]);
@@ -87,12 +88,26 @@ class Writer {
 
     std::string text() {
         text_ = "HIERARCHY\n";
-        write_part(0, 0);
+        for (const std::size_t tree : trees_) {
+            write_part(tree, 0);
+        }
         write_motion();
         return std::move(text_);
     }
 
  private:
+    // Whether the joint is ever elsewhere than at rest, seen from its parent.
+    bool shifts(std::size_t joint) const {
+        const auto& joints = actor_.skeleton.joints;
+        const Vec3 rest = joints[joint].parent_from_joint_rest.translation;
+        for (std::size_t key = 0; key < take_.times.size(); ++key) {
+            const Vec3 at = actor_.parent_from_joint[key * joints.size() + joint].translation;
+            if (length(at - rest) > 1e-6) {
+                return true;
+            }
+        }
+        return false;
+    }
     bool root_is_still() const {
         const std::size_t joints = actor_.skeleton.joints.size();
         for (std::size_t key = 0; key < take_.times.size(); ++key) {
@@ -117,7 +132,7 @@ class Writer {
         const figure::Joint& joint = actor_.skeleton.joints[p.joint];
         order_.push_back(part);
         indent(depth);
-        text_ += part == 0 ? "ROOT " : "JOINT ";
+        text_ += depth == 0 ? "ROOT " : "JOINT ";
         text_ += bone_name(options_.names, joint.name) + "\n";
         indent(depth);
         text_ += "{\n";
@@ -189,6 +204,7 @@ class Writer {
     double scale_ = 100;
     std::vector<Transform> rest_;  // model_from_joint at rest
     std::vector<Part> parts_;
+    std::vector<std::size_t> trees_;  // parts without a parent
     std::vector<std::size_t> order_;  // parts, depth first: the order of the channels
     std::string text_;
 };

@@ -31,6 +31,15 @@ void drop_still(std::vector<motion::ClipTrack<Key>>& tracks) {
 
 }  // namespace
 
+Diagnostics too_large(const std::string& path, std::uint64_t bytes) {
+    return {{Severity::kError,
+             "too-large",
+             {path, 0, 0, 1},
+             "",
+             "the file is larger than " + std::to_string(bytes) + " bytes",
+             "split it"}};
+}
+
 std::string clip_name_of(std::string_view path) {
     const std::size_t slash = path.find_last_of("/\\");
     std::string_view name = slash == std::string_view::npos ? path : path.substr(slash + 1);

@@ -10,6 +10,9 @@
 
 namespace puppetri::io {
 
+// What a reader says of a file with more bytes than it takes.
+Diagnostics too_large(const std::string& path, std::uint64_t bytes);
+
 // The file's name without folders and ending: "walk" of "a/walk.bvh".
 std::string clip_name_of(std::string_view path);
 

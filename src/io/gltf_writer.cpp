@@ -120,7 +120,10 @@ void Assembly::place_actor(const TakeActor& actor) {
     if (find(actors_, actor.name) != nullptr) {
         return;
     }
-    const std::string prefix = node_name(actor.name);
+    // A figure without a name is alone in its file: its joints keep theirs, at rest where the
+    // skeleton says.
+    const bool alone = actor.name.empty();
+    const std::string prefix = alone ? "figure" : node_name(actor.name);
     const int group = add_root({unique(prefix), {}, {}, -1, -1, -1});
     Skin skin;
     skin.name = prefix;
@@ -130,7 +133,7 @@ void Assembly::place_actor(const TakeActor& actor) {
         // The root stands where the take begins, so that figures are apart without an animation
         // too.
         const Transform& rest =
-            j == 0 ? actor.parent_from_joint.front() : joint.parent_from_joint_rest;
+            j == 0 && !alone ? actor.parent_from_joint.front() : joint.parent_from_joint_rest;
         const int parent =
             joint.parent.valid() ? placed.first_node + static_cast<int>(joint.parent.value) : group;
         // Colons, blanks and brackets go, but Rigify's dots stay: Blender mirrors by them.
@@ -138,7 +141,7 @@ void Assembly::place_actor(const TakeActor& actor) {
         if (options_.names != BoneNames::kRigify) {
             name = node_name(name);
         }
-        const int node = add_node({prefix + "_" + name, rest, {}, -1, -1, -1});
+        const int node = add_node({alone ? name : prefix + "_" + name, rest, {}, -1, -1, -1});
         nodes_[static_cast<std::size_t>(parent)].children.push_back(node);
         skin.joints.push_back(node);
     }

@@ -98,6 +98,17 @@ Vec3 hermite_rate(Quat a, Vec3 rate_a, Quat b, Vec3 rate_b, double duration_s, d
 
 Vec3 change_between(Quat a, Quat b) { return to_rotation_vector(conjugate(a) * b); }
 
+// The slope of time is 3 ((1 - s)^2 x1 + 2 (1 - s) s (x2 - x1) + s^2 (1 - x2)); such a sum is
+// nowhere negative on [0, 1] iff its outer coefficients are not, nor the middle one below minus
+// their geometric mean. The slack is for rounding.
+bool runs_forward(const Easing& e) {
+    const double first = e.x1, last = 1 - e.x2;
+    if (!(first >= -1e-9 && last >= -1e-9)) {
+        return false;
+    }
+    return e.x2 - e.x1 >= -std::sqrt(std::fmax(first, 0) * std::fmax(last, 0)) - 1e-9;
+}
+
 double ease(const Easing& easing, double ratio) {
     if (ratio <= 0 || ratio >= 1) {
         return ratio <= 0 ? 0 : 1;

@@ -139,8 +139,7 @@ class Checker {
                 return;
             }
             const Easing& e = key.easing;
-            if (!(e.x1 >= 0 && e.x1 <= 1 && e.x2 >= 0 && e.x2 <= 1 && finite(e.y1) &&
-                  finite(e.y2))) {
+            if (!runs_forward(e) || !finite(e.y1) || !finite(e.y2)) {
                 complain("bad-clip-value", here, "the time of its easing would run back",
                          "keep x1 and x2 of the easing between 0 and 1");
                 return;

@@ -93,7 +93,7 @@ GltfPrimitiveData primitive_of(const tinygltf::Model& model, const tinygltf::Pri
             data.weights.push_back(weights);
         }
     }
-    data.index_count = count_of(model, primitive.indices);
+    data.index_count = primitive.indices < 0 ? 0 : count_of(model, primitive.indices);
     return data;
 }
 
@@ -133,6 +133,8 @@ int GltfFile::find(const std::string& name) const {
 
 std::vector<Eigen::Isometry3d> GltfFile::pose(std::size_t clip, double t) const {
     std::vector<Eigen::Isometry3d> world(nodes.size());
+    // Places by way of the scales; turns without them.
+    std::vector<Eigen::Affine3d> scaled(nodes.size());
     for (const int n : order) {
         const GltfNode& node = nodes[static_cast<std::size_t>(n)];
         Eigen::Vector3d translation = node.translation;
@@ -148,13 +150,19 @@ std::vector<Eigen::Isometry3d> GltfFile::pose(std::size_t clip, double t) const 
         }
         Eigen::Isometry3d local = Eigen::Isometry3d::Identity();
         local.translate(translation).rotate(rotation.normalized());
-        world[static_cast<std::size_t>(n)] =
-            node.parent < 0 ? local : world[static_cast<std::size_t>(node.parent)] * local;
+        const auto at = static_cast<std::size_t>(n), above = static_cast<std::size_t>(node.parent);
+        scaled[at] = Eigen::Affine3d(local) * Eigen::Scaling(node.scale);
+        world[at] = local;
+        if (node.parent >= 0) {
+            scaled[at] = scaled[above] * scaled[at];
+            world[at] = world[above] * local;
+        }
+        world[at].translation() = scaled[at].translation();
     }
     return world;
 }
 
-GltfFile read_gltf(const std::string& bytes, const std::string& folder) {
+GltfFile read_gltf(const std::string& bytes, const std::string& folder, bool scales) {
     tinygltf::TinyGLTF loader;
     loader.SetStoreOriginalJSONForExtrasAndExtensions(true);
     tinygltf::Model model;
@@ -177,8 +185,19 @@ GltfFile read_gltf(const std::string& bytes, const std::string& folder) {
         node.mesh = n.mesh;
         node.skin = n.skin;
         node.camera = n.camera;
-        if (!n.scale.empty() || !n.matrix.empty()) {
+        if ((!n.scale.empty() || !n.matrix.empty()) && !scales) {
             throw std::runtime_error("node " + n.name + " has a scale or a matrix");
+        }
+        if (!n.scale.empty()) {
+            node.scale = {n.scale[0], n.scale[1], n.scale[2]};
+        }
+        if (!n.matrix.empty()) {
+            const Eigen::Affine3d affine(Eigen::Map<const Eigen::Matrix4d>(n.matrix.data()));
+            Eigen::Matrix3d turn, stretch;
+            affine.computeRotationScaling(&turn, &stretch);
+            node.translation = affine.translation();
+            node.rotation = turn;
+            node.scale = stretch.diagonal();
         }
         if (!n.translation.empty()) {
             node.translation = {n.translation[0], n.translation[1], n.translation[2]};
@@ -194,7 +213,7 @@ GltfFile read_gltf(const std::string& bytes, const std::string& folder) {
             file.nodes[static_cast<std::size_t>(child)].parent = static_cast<int>(i);
         }
     }
-    file.order = model.scenes.at(static_cast<std::size_t>(model.defaultScene)).nodes;
+    file.order = model.scenes.at(static_cast<std::size_t>(std::max(model.defaultScene, 0))).nodes;
     for (std::size_t i = 0; i < file.order.size(); ++i) {
         const auto& children = file.nodes[static_cast<std::size_t>(file.order[i])].children;
         file.order.insert(file.order.end(), children.begin(), children.end());

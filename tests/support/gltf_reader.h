@@ -33,6 +33,7 @@ struct GltfNode {
     std::vector<int> children;
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d scale = Eigen::Vector3d::Ones();
     int mesh = -1, skin = -1, camera = -1;
 };
 
@@ -64,7 +65,8 @@ struct GltfFile {
 };
 
 // The bytes of a .glb; or the JSON of a .gltf whose buffer lies in `folder`. Throws
-// std::runtime_error with what tinygltf says; its warnings count as errors.
-GltfFile read_gltf(const std::string& bytes, const std::string& folder = "");
+// std::runtime_error with what tinygltf says; its warnings count as errors, and, unless `scales` is
+// set, scales and matrices of nodes: our files have none.
+GltfFile read_gltf(const std::string& bytes, const std::string& folder = "", bool scales = false);
 
 }  // namespace puppetri::test

@@ -51,16 +51,20 @@ Checked<ClipFile> parse_clips(std::string bytes, const std::string& path,
 Checked<ClipFile> load_clips(const std::string& path, const ClipReadOptions& options = {});
 
 struct ClipWriteOptions {
-    double rate_hz = 0;  // of sampled formats (BVH, glTF); 0: the source's frame time, else 60
-    double scale = 0;    // BVH: file = metres / scale; 0: centimetres
+    // Frames per second of what is sampled (BVH, glTF); 0: the source's. A glTF file of a source
+    // without frames has the keys of the clip, and 60 frames per second where they are splines.
+    double rate_hz = 0;
+    bool metres = false;  // BVH in metres instead of centimetres
     BoneNames names = BoneNames::kVrm;
 };
 
-// Writes all clips, whole or not at all. BVH holds one clip: several become NAME_CLIP.bvh. Gives
-// the paths.
+// Writes all clips, whole or not at all. BVH holds one clip: several become NAME_CLIP.bvh. A file
+// without joints whose targets are a humanoid's plays on the mannequin of 1.75 m. Gives the paths;
+// `notes` gets what the format could not hold.
 // Fails   "cannot-write", "disk-full"; "no-skeleton": the format needs joints, and the file has
-//         none; "not-writable": VRM animations are only read.
+//         none; "not-writable": VRM animations are only read; "too-large": more than ten million
+//         frames times joints.
 Checked<std::vector<std::string>> write_clips(const std::string& path, const ClipFile& file,
-                                              const ClipWriteOptions& options = {});
+                                              const ClipWriteOptions& options, Diagnostics& notes);
 
 }  // namespace puppetri::io

@@ -63,7 +63,11 @@ struct Easing {
     double x1 = 0.42, y1 = 0, x2 = 0.58, y2 = 1;
     bool operator==(const Easing&) const = default;
 };
-// Needs   x1 and x2 in [0, 1]: time then never runs back.
+// Whether time never runs back along it; so with x1 and x2 in [0, 1], as CSS wants, and a little
+// beyond (parts of such curves, stretched to the unit square, need it).
+bool runs_forward(const Easing& easing);
+
+// Needs   runs_forward.
 // Gives   y with an error of x below 1e-12; ease(0) = 0, ease(1) = 1.
 // Source  CSS Easing Functions Level 1, section 2.2; the equation is solved by Newton's method
 //         within a bracket.

@@ -46,17 +46,19 @@ Clip inserted(const Clip& clip, double t_s, const Clip& piece);
 // One after the other; the second's root goes on from where the first's root has come.
 Clip joined(const Clip& first, const Clip& second);
 
-// As if seen in a mirror: left and right change their roles. The joints' axes must be mirror images
-// too, which the rest pose tells: a track of joint J on one side becomes the track of its partner,
-// reflected in the plane x = 0 of the model.
-// Needs   the skeleton on which the clip plays. Partners are found by their names (left and right,
-//         Left and Right, L and R at an end or between separators).
-// Gives   of degrees of freedom: the partner's; twists and leans of the middle (".side", ".twist")
+// As if seen in a mirror: left and right change their roles.
+// Needs   the skeleton on which the clip plays, left and right alike at rest. Partners are found by
+//         their names (mirrored_name); the sagittal plane is across the axis along which partners
+//         lie apart.
+// Gives   of degrees of freedom: the partner's; those of the middle called ".side" and ".twist"
 //         change their sign. Marks change sides. Twice is the identity.
+// Source  with S the reflection, R the rotations of the model at rest and K(j) = (S R(j) S)^-1
+//         R(partner of j), the rotation L of joint j below p becomes K(p)^-1 (S L S) K(j) of its
+//         partner: the mirror image of the pose, in the partner's own axes.
 Clip mirrored(const Clip& clip, const figure::Skeleton& skeleton);
 
-// "leftFoot" -> "rightFoot", "Left_Arm" -> "Right_Arm", "hand.L" -> "hand.R"; other names as they
-// are.
+// "leftFoot" -> "rightFoot", "Left_Arm" -> "Right_Arm", "hand.L" -> "hand.R", "LThumb" -> "RThumb";
+// other names as they are.
 std::string mirrored_name(std::string_view name);
 
 // Runs backwards.
@@ -75,8 +77,9 @@ Clip warped(const Clip& clip, std::span<const WarpPoint> points);
 // The same motion `rounds` times, the travel of the root going on. Needs rounds >= 1.
 Clip repeated(const Clip& clip, int rounds);
 
-// Makes the end meet the beginning: what is missing fades in over the whole clip for the slow drift
-// (the root keeps its travel), and over the last `blend_s` by easing for the rates.
+// Makes the end meet the beginning, in value and rate: what is missing at the end is added over the
+// last blend_s, growing as a cubic. The root keeps its travel. The result loops.
+// Needs   0 < blend_s <= duration.
 Clip closed(const Clip& clip, double blend_s);
 
 // Keys every 1 / rate_hz, linear: of all tracks alike. Needs rate_hz > 0.

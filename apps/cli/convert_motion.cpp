@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "convert_motion.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "puppetri/base/frame_rate.h"
+#include "puppetri/base/text.h"
+#include "puppetri/io/json_writer.h"
+#include "terminal.h"
+
+namespace puppetri::cli {
+
+std::vector<Option> motion_options() {
+    return {{"--scale", Value::kText, "S",
+             "motion: a length of the file times S is metres (BVH: 0.01 unless said)", false},
+            {"--clip", Value::kTexts, "NAME", "motion: only this clip; may be given again", false},
+            {"--fps", Value::kText, "RATE", "motion: frames per second of what is sampled", false},
+            {"--unit", Value::kText, "UNIT", "BVH out: cm or m", false},
+            {"--names", Value::kText, "SET", "bones out: vrm, mixamo, unreal or rigify", false},
+            {"--json", Value::kFlag, "", "motion: say what was written as JSON", false}};
+}
+
+std::optional<io::ClipReadOptions> motion_read_options(const Arguments& arguments) {
+    io::ClipReadOptions options;
+    if (arguments.given("--scale")) {
+        const std::optional<double> scale = parse_number(arguments.text("--scale"));
+        if (!scale || !(*scale > 1e-9 && *scale < 1e9)) {
+            say_error("--scale is a positive number: the metres of one unit of the file");
+            return std::nullopt;
+        }
+        options.scale = *scale;
+    }
+    return options;
+}
+
+std::optional<io::ClipWriteOptions> motion_write_options(const Arguments& arguments) {
+    io::ClipWriteOptions options;
+    if (arguments.given("--fps")) {
+        const std::optional<FrameRate> rate = parse_frame_rate(arguments.text("--fps"));
+        if (!rate) {
+            say_error("--fps is a number of frames per second: 24, 23.976, 30000/1001");
+            return std::nullopt;
+        }
+        options.rate_hz = rate->per_second();
+    }
+    const std::string unit = arguments.text("--unit", "cm");
+    if (unit != "cm" && unit != "m") {
+        say_error("--unit is one of: cm, m; not \"" + unit + "\"");
+        return std::nullopt;
+    }
+    options.metres = unit == "m";
+    const std::string names = arguments.text("--names", "vrm");
+    const std::optional<io::BoneNames> set = io::parse_bone_names(names);
+    if (!set) {
+        say_error("--names is one of: vrm, mixamo, unreal, rigify; not \"" + names + "\"");
+        return std::nullopt;
+    }
+    options.names = *set;
+    return options;
+}
+
+bool keep_clips(io::ClipFile& file, const std::vector<std::string>& names) {
+    if (names.empty()) {
+        return true;
+    }
+    std::vector<std::string> known;
+    for (const motion::Clip& clip : file.clips) {
+        known.push_back(clip.name);
+    }
+    std::vector<motion::Clip> kept;
+    for (const std::string& name : names) {
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end()) {
+            std::string all;
+            for (const std::string& k : known) {
+                all += (all.empty() ? "" : ", ") + k;
+            }
+            const std::string_view near = nearest_name(name, known);
+            say_error("there is no clip " + name +
+                      (near.empty() ? "" : "; did you mean " + std::string(near) + "?"));
+            say("clips: " + all);
+            return false;
+        }
+        kept.push_back(file.clips[static_cast<std::size_t>(found - known.begin())]);
+    }
+    file.clips = std::move(kept);
+    return true;
+}
+
+int write_motion(const std::string& path, const io::ClipFile& file,
+                 const io::ClipWriteOptions& options, bool json) {
+    Diagnostics notes;
+    const Checked<std::vector<std::string>> written = io::write_clips(path, file, options, notes);
+    if (!written) {
+        say_diagnostics(written.error());
+        const std::string& code = written.error()[0].code;
+        return code == "cannot-write" || code == "disk-full" ? kFailed : kBadInput;
+    }
+    say_diagnostics(notes);
+    if (json) {
+        io::JsonWriter out;
+        out.begin_object().key("files").begin_array();
+        for (const std::string& name : *written) {
+            out.string(name);
+        }
+        out.end_array().key("clips").begin_array();
+        for (const motion::Clip& clip : file.clips) {
+            out.begin_object()
+                .member("name", clip.name)
+                .member("duration_s", clip.duration_s)
+                .end_object();
+        }
+        out.end_array().end_object();
+        std::printf("%s\n", out.text().c_str());
+        return kFine;
+    }
+    for (const std::string& name : *written) {
+        say(name + ": " + std::to_string(file.clips.size()) +
+            (file.clips.size() == 1 ? " clip, " : " clips, ") +
+            std::to_string(file.skeleton.joints.size()) + " joints");
+    }
+    return kFine;
+}
+
+int convert_motion(const Arguments& arguments) {
+    const std::optional<io::ClipReadOptions> reading = motion_read_options(arguments);
+    const std::optional<io::ClipWriteOptions> writing = motion_write_options(arguments);
+    if (!reading || !writing) {
+        return kBadInput;
+    }
+    Checked<io::ClipFile> file = io::load_clips(arguments.text("in"), *reading);
+    if (!file) {
+        say_diagnostics(file.error());
+        return kBadInput;
+    }
+    say_diagnostics(file->notes);
+    if (!keep_clips(*file, arguments.texts("--clip"))) {
+        return kBadInput;
+    }
+    return write_motion(arguments.text("out"), *file, *writing, arguments.given("--json"));
+}
+
+}  // namespace puppetri::cli
