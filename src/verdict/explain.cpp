@@ -37,6 +37,13 @@ bool is_enabled(const proof::PlainNet& plain, const proof::Marking& marking, std
     return plain.enabled(marking, t);
 }
 
+bool is_about_freezing(const scene::Scene& scene, const std::string& rule) {
+    return rule.starts_with("builtin.nobody_freezes") ||
+           std::any_of(scene.rules().begin(), scene.rules().end(), [&](const net::Rule& r) {
+               return r.path == rule && r.kind == net::RuleKind::kNobodyFreezes;
+           });
+}
+
 }  // namespace
 
 std::vector<std::string> story(const net::Net& net, const Witness& witness) {
@@ -94,12 +101,21 @@ Explanation explain(const scene::Scene& scene, const Verdict& verdict) {
         }
     };
     look();
-    while (player.step()) {
+    const auto fired = [&] {
         const net::TransitionIndex t = player.player().last();
         for (const net::Weighted& w : plain.net.takes.row(t.value)) {
             taker[w.place] = {t.value, player.player().now()};
         }
         look();
+    };
+    while (player.step()) {
+        fired();
+    }
+    // Who freezes may still be on its way to where it will wait.
+    for (std::uint32_t more = 0; is_about_freezing(scene, verdict.rule) &&
+                                 more < 2 * net.transition_count() && player.step_on();
+         ++more) {
+        fired();
     }
     proof::Marking marking(net.place_count());
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {

@@ -589,7 +589,7 @@ struct JoinRule::Data {
             v.states = graph->size();
             v.edges = graph->edges.items.size();
             by_graph(actor, state, *graph);
-        } else if (graph == nullptr && !state.known) {
+        } else if (!state.known) {
             by_invariants(actor, state);
         }
         if (!state.known) {

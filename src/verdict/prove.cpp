@@ -778,6 +778,10 @@ class Prover {
             return;
         }
         caught.witness->says = f.reason;
+        if (f.target == Target::kHopeless) {  // long enough to see that nothing comes any more
+            constexpr SimTime kWaiting{8 * kTicksPerSecond};
+            caught.witness->until = caught.witness->until + kWaiting;
+        }
         w.verdict.witness = std::move(caught.witness);
         if (!decides) {
             return;

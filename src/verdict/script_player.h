@@ -20,9 +20,14 @@ class ScriptPlayer {
     ScriptPlayer& operator=(const ScriptPlayer&) = delete;
     // The next firing of the witness; false: it is over.
     bool step();
+    // One more firing after it, as chance has it. False: nothing fires any more.
+    bool step_on() {
+        return player_.step({.until = player_.now() + kPatience}) == run::Stop::kNone;
+    }
     const run::Player& player() const { return player_; }
 
  private:
+    static constexpr SimTime kPatience{600 * kTicksPerSecond};
     const Witness& witness_;
     stage::Stage stage_;
     net::ScriptedChooser chooser_;
