@@ -62,9 +62,9 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
                 return StructuralProof{.method = answer.method};
             }
             if (answer.kind == proof::BoundednessAnswer::kUnbounded) {
-                grows = "without time, place " +
+                grows = "times left aside, tokens pile up in place " +
                         std::string(net_.place(net::PlaceIndex{answer.place}).path) +
-                        " grows without end";
+                        " without end";
             }
             return std::nullopt;
         }

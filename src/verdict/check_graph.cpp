@@ -152,7 +152,7 @@ class Checker {
         const bool possible = o_.kind == RuleKind::kPossible;
         if (any(broken)) {
             return suspect(std::move(p), std::move(broken), Target::kBroken,
-                           possible ? "it may hold" : "a path breaks it");
+                           possible ? "it may hold" : how_broken(o_.kind));
         }
         if (!covers(p)) {
             return cut_short();
@@ -380,7 +380,7 @@ class Checker {
         }
         if (any(hopeless)) {
             Finding f = suspect(std::move(p), std::move(hopeless), Target::kHopeless,
-                                what + " gets out of reach");
+                                what + " can become impossible for ever");
             f.certain = f.targets;
             return f;
         }
@@ -398,8 +398,8 @@ class Checker {
             return holds(Force::kEveryChoice);
         }
         return unknown(what +
-                       " stays within reach as far as this method sees, but may be "
-                       "avoided for ever; only an exact method can say more");
+                       " stays possible as far as this method sees, but may be put off for ever; "
+                       "only an exact method can say more");
     }
 
     Finding live() {
@@ -486,7 +486,8 @@ class Checker {
             for (std::uint32_t n = 0; n < p.size(); ++n) {
                 ends[n] = p.rests(n) && p.final_marking(n) ? 1 : 0;
             }
-            Finding f = stays_possible(Product(p), may, must, ends, ends, "a movement of " + who);
+            Finding f =
+                stays_possible(Product(p), may, must, ends, ends, "another movement of " + who);
             if (f.kind != Kind::kHolds) {
                 f.subject = who;
                 return f;
@@ -564,6 +565,29 @@ class Checker {
 };
 
 }  // namespace
+
+const char* how_broken(net::RuleKind kind) {
+    switch (kind) {
+        case net::RuleKind::kNever:
+            return "what must never be can be";
+        case net::RuleKind::kAlways:
+            return "what must always hold can fail";
+        case net::RuleKind::kMutex:
+            return "two of them can be true at once";
+        case net::RuleKind::kExactlyOne:
+            return "none of them, or more than one, can be true";
+        case net::RuleKind::kBounded:
+            return "there can be more tokens than allowed";
+        case net::RuleKind::kAlternate:
+            return "they can go out of turn";
+        case net::RuleKind::kOnlyIf:
+            return "it can happen without its condition";
+        case net::RuleKind::kUntil:
+            return "it can happen too early";
+        default:
+            return "a run can break it";
+    }
+}
 
 Finding check_on_graph(const net::Net& net, const Obligation& obligation, const GraphView& view,
                        std::uint64_t most_edges) {

@@ -136,7 +136,7 @@ PlainFinding PlainRules::every_state(const net::Rule& rule) {
         rule.operands[0].nodes[0].op == FormulaOp::kFires) {
         way->push_back(rule.operands[0].nodes[0].index);
     }
-    return refuted(reached[0].how, "a path breaks it", std::move(way), Target::kBroken);
+    return refuted(reached[0].how, how_broken(rule.kind), std::move(way), Target::kBroken);
 }
 
 PlainFinding PlainRules::possible(const net::Rule& rule) {

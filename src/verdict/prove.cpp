@@ -231,7 +231,7 @@ class Prover {
             std::vector<std::uint32_t> numbers(group.size(), kWhole);
             for (std::size_t k = 0; k < group.size(); ++k) {
                 const Work& w = works_[group[k]];
-                if (!splits(w.asked)) {
+                if (!Splitting::splits(w.asked)) {
                     good[k] = 0;
                     continue;
                 }
@@ -256,7 +256,7 @@ class Prover {
                 std::optional<Finding> f = check(*part, number, Method::kReadiness, v);
                 const bool holds = f && f->kind == Kind::kHolds;
                 once[k] |= holds ? 1 : 0;
-                good[k] &= holds || of_one(w.asked) ? 1 : 0;
+                good[k] &= holds || Splitting::one_is_enough(w.asked) ? 1 : 0;
                 sums[k].states += v.states;
                 sums[k].edges += v.edges;
                 if (f && (f->force == Force::kProbabilityOne ||
@@ -268,7 +268,7 @@ class Prover {
         bool all = true;
         for (std::size_t k = 0; k < group.size(); ++k) {
             Work& w = works_[group[k]];
-            if (good[k] != 0 && (!of_one(w.asked) || once[k] != 0)) {
+            if (good[k] != 0 && (!Splitting::one_is_enough(w.asked) || once[k] != 0)) {
                 w.verdict.answer = Answer::kProved;
                 w.verdict.force = sums[k].force;
                 w.verdict.method =
@@ -282,32 +282,6 @@ class Prover {
         }
         return all;
     }
-    // It is enough that one part keeps it.
-    static bool of_one(const Asked& asked) {
-        return asked.question == Question::kRule && asked.rule.kind == net::RuleKind::kDeadlockFree;
-    }
-    // A part can be asked by itself, and the answers put together.
-    static bool splits(const Asked& asked) {
-        if (asked.question == Question::kOneOfEach || asked.question == Question::kJoins) {
-            return false;
-        }
-        if (asked.question != Question::kRule) {
-            return true;
-        }
-        switch (asked.rule.kind) {
-            case net::RuleKind::kDeadlockFree:
-            case net::RuleKind::kEnds:
-                return true;
-            case net::RuleKind::kLive:
-            case net::RuleKind::kQuasiLive:
-                return asked.rule.transitions.empty();
-            case net::RuleKind::kBounded:
-                return asked.rule.operands.empty();
-            default:
-                return false;
-        }
-    }
-
     void examine(Part& part, const std::vector<std::uint32_t>& group) {
         joins_.reset();
         std::vector<std::uint32_t> open, numbers;
@@ -605,8 +579,8 @@ class Prover {
             case Kind::kUnknown:
                 w.verdict.reason = std::string(name_of(method)) + ": " + f->reason;
                 if (part.grows && f->reason.find("may grow") == std::string::npos) {
-                    w.verdict.reason +=
-                        " (without time, place " + part.grows_where + " grows without end)";
+                    w.verdict.reason += "; times left aside, tokens pile up in place " +
+                                        part.grows_where + " without end: give it a bound";
                 }
                 return;
         }

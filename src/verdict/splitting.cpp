@@ -103,6 +103,31 @@ bool Splitting::reads_everything(const Asked& asked) {
            reads_whole_net(asked.rule);
 }
 
+bool Splitting::one_is_enough(const Asked& asked) {
+    return asked.question == Question::kRule && asked.rule.kind == net::RuleKind::kDeadlockFree;
+}
+
+bool Splitting::splits(const Asked& asked) {
+    if (asked.question == Question::kOneOfEach || asked.question == Question::kJoins) {
+        return false;
+    }
+    if (asked.question != Question::kRule) {
+        return true;
+    }
+    switch (asked.rule.kind) {
+        case net::RuleKind::kDeadlockFree:
+        case net::RuleKind::kEnds:
+            return true;
+        case net::RuleKind::kLive:
+        case net::RuleKind::kQuasiLive:
+            return asked.rule.transitions.empty();
+        case net::RuleKind::kBounded:
+            return asked.rule.operands.empty();
+        default:
+            return false;
+    }
+}
+
 net::NetDraft Splitting::draft_of(std::uint32_t part, std::vector<net::Rule> rules) const {
     net::NetDraft draft = lowered_;
     draft.rules = std::move(rules);

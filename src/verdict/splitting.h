@@ -29,6 +29,10 @@ class Splitting {
     net::NetDraft draft_of(std::uint32_t part, std::vector<net::Rule> rules) const;
 
     static bool reads_everything(const Asked& asked);
+    // Of what reads everything: each part can be asked by itself, and the answers put together.
+    static bool splits(const Asked& asked);
+    // It is enough that one part keeps it.
+    static bool one_is_enough(const Asked& asked);
 
  private:
     void add_figures(std::uint32_t atom, std::vector<std::uint32_t>& out) const;

@@ -107,10 +107,13 @@ TEST_CASE("the duet goes on while two are frozen; explained, repaired, proved [a
     REQUIRE(frozen.witness.has_value());
     const Explanation why = explain(*e.scene, frozen);
     REQUIRE(why.waits.size() == 2);
-    CHECK(why.waits[0].missing.find("fan_lies") == 0);
-    CHECK(why.waits[0].taken_by.find("rui_takes") == 0);
-    CHECK(why.waits[1].missing.find("rose_lies") == 0);
-    CHECK(why.waits[1].taken_by.find("ana_takes") == 0);
+    // The witness ends when nothing can help any more; both are told where they will wait.
+    CHECK(why.waits[0].place.find("ana_waits") == 0);
+    CHECK(why.waits[0].missing.find("carpet_free") == 0);
+    CHECK(why.waits[0].taken_by.find("rui_goes") == 0);
+    CHECK(why.waits[1].place.find("rui_opens") == 0);
+    CHECK(why.waits[1].missing.find("to_rui") == 0);
+    CHECK(why.waits[1].taken_by.empty());
     Disk files;
     const RepairAnswer answer = repair(files, *e.scene, e.verdicts, "everybody", {});
     REQUIRE_MESSAGE(answer.repair.has_value(), answer.reason);

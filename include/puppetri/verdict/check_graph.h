@@ -72,6 +72,9 @@ struct Finding {
 Finding check_on_graph(const net::Net& net, const Obligation& obligation, const GraphView& view,
                        std::uint64_t most_edges);
 
+// What is wrong when a moment breaks a rule of this kind, in words.
+const char* how_broken(net::RuleKind kind);
+
 // How long what waits may wait, for GraphView::at_most: by place, then by transition (their
 // delays). `actions` as in proof::GraphRequest.
 std::vector<std::int64_t> longest_waits(const net::Net& net,
