@@ -228,7 +228,7 @@ PlainFinding PlainRules::stays_possible(const net::Rule& rule) {
         return proved(o.decision.how);
     }
     const std::string what = live ? "firing " + name(o.transition) : "the start";
-    return refuted(o.decision.how, what + " gets out of reach", std::move(o.out),
+    return refuted(o.decision.how, what + " can become impossible for ever", std::move(o.out),
                    Target::kHopeless);
 }
 
