@@ -96,13 +96,46 @@ constexpr Parameter kHold[] = {kBallParameter};
 constexpr Parameter kReady[] = {
     kBallParameter,
     {.name = "from", .types = types({kActor, kPoint}), .doc = "where it will come from"}};
+constexpr Parameter kHandParameter{.name = "side",
+                                   .types = types({kSide}),
+                                   .default_text = "right",
+                                   .default_value = 1,
+                                   .doc = "the hand"};
+constexpr Parameter kElbowParameter{
+    .name = "elbow",
+    .types = types({kAngle}),
+    .optional = true,
+    .doc =
+        "how far it is lifted outward, from hanging; without, the arm moves as little as it can"};
 constexpr Parameter kReach[] = {
     {.name = "to", .types = types({kProp, kPoint, kActor}), .doc = "what the hand reaches for"},
-    {.name = "side",
-     .types = types({kSide}),
-     .default_text = "right",
-     .default_value = 1,
-     .doc = "the hand"}};
+    kHandParameter,
+    {.name = "palm",
+     .types = types({kProp, kPoint, kActor}),
+     .optional = true,
+     .doc = "what the palm faces"},
+    {.name = "fingers",
+     .types = types({kProp, kPoint, kActor}),
+     .optional = true,
+     .doc = "what the fingers point to"},
+    kElbowParameter};
+constexpr Parameter kAtParameter{
+    .name = "at", .types = types({kProp, kPoint, kActor}), .doc = "what, or whose head"};
+constexpr Parameter kPointing[] = {kAtParameter, kHandParameter, kElbowParameter};
+constexpr Parameter kAim[] = {kAtParameter,
+                              kHandParameter,
+                              {.name = "flexion",
+                               .types = types({kAngle}),
+                               .default_text = "60 deg",
+                               .default_value = 60 * kDegree,
+                               .doc = "the bend of the elbow, or the nearest with which it can"},
+                              kElbowParameter};
+constexpr Parameter kLook[] = {kAtParameter,
+                               {.name = "trunk",
+                                .types = types({kReal}),
+                                .default_text = "0.3",
+                                .default_value = 0.3,
+                                .doc = "the part of the turn that the trunk takes, 0 to 1"}};
 constexpr Parameter kThrow[] = {kBallParameter,
                                 {.name = "to",
                                  .types = types({kActor, kPoint}),
@@ -125,6 +158,13 @@ constexpr Parameter kArmSwing[] = {{.name = "angle",
                                     .doc = "how far from hanging"}};
 
 constexpr auto kTable = std::to_array<MovementSignature>({
+    {.name = "aim",
+     .parameters = kAim,
+     .limbs = kArms,
+     .as_argument = true,
+     .shortest = milliseconds(600),
+     .longest = milliseconds(600),
+     .doc = "aims at something with a bent arm: the line of the hand passes through it"},
     {.name = "carry",
      .parameters = kHold,
      .limbs = kArms,
@@ -173,6 +213,19 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .shortest = milliseconds(1),
      .longest = milliseconds(86'400'000),
      .doc = "stands alive: breathes, shifts its weight, looks about"},
+    {.name = "look",
+     .parameters = kLook,
+     .limbs = limbs_of({Limb::kBody}),
+     .shortest = milliseconds(600),
+     .longest = milliseconds(600),
+     .doc = "looks at something, with trunk, neck and head"},
+    {.name = "point",
+     .parameters = kPointing,
+     .limbs = kArms,
+     .as_argument = true,
+     .shortest = milliseconds(600),
+     .longest = milliseconds(600),
+     .doc = "points at something with an arm that is almost straight"},
     {.name = "reach",
      .parameters = kReach,
      .limbs = kArms,

@@ -13,6 +13,7 @@
 #include "puppetri/motion/gaze.h"
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
+#include "puppetri/motion/look.h"
 #include "puppetri/motion/own_movement.h"
 #include "puppetri/motion/turn.h"
 #include "times.h"
@@ -28,6 +29,8 @@ constexpr double kFastHand_m_s = 2.0;
 constexpr double kTurning_rad_s = 3.4;
 // A ball farther than this from where the hands would hold it is not caught.
 constexpr double kCatch_m = 0.02;
+// What hands and eyes leave of a turn or a way before somebody sees it.
+constexpr double kShown_rad = radians(5), kMiss_m = 0.05;
 
 std::string centimetres(double m) {
     return std::to_string(static_cast<long long>(std::nearbyint(m * 100))) + " cm";
@@ -63,6 +66,14 @@ class Preparer {
     void leg(bool support);
     void arm_swing(double sign);
     void reach();
+    void point(bool straight);
+    void look();
+    void keep(ArmMovement made, bool wants_rotation);
+    bool hands_full(double duration_s);
+    Vec3 looked_at(const ArgumentValue& value) const;
+    Vec3 target(const char* parameter);
+    std::optional<Vec3> optional_target(const char* parameter) const;
+    std::optional<double> elbow() const;
     void carry(bool stay);
     void own();
 
@@ -365,21 +376,89 @@ void Preparer::arm_swing(double sign) {
         make_arm_swing(context_, {.side = side, .angle_rad = sign * arguments_.number("angle")});
 }
 
+Vec3 Preparer::looked_at(const ArgumentValue& value) const {
+    const auto* actor = std::get_if<ActorIndex>(&value);
+    return actor != nullptr ? head_of(*actor) : place_of(value);
+}
+
+// A point or a prop, or the head of an actor; and the eyes go there.
+Vec3 Preparer::target(const char* parameter) {
+    const ArgumentValue* value = arguments_.find(parameter);
+    PUP_REQUIRE(value != nullptr);
+    result_.prop = arguments_.prop(parameter);
+    const Vec3 point = looked_at(*value);
+    result_.gaze = {.kind = GazeKind::kPoint, .point_world = point};
+    return point;
+}
+
+std::optional<Vec3> Preparer::optional_target(const char* parameter) const {
+    const ArgumentValue* value = arguments_.find(parameter);
+    return value == nullptr ? std::nullopt : std::optional(looked_at(*value));
+}
+
+std::optional<double> Preparer::elbow() const {
+    return arguments_.find("elbow") == nullptr ? std::nullopt
+                                               : std::optional(arguments_.number("elbow"));
+}
+
+// Hands that hold something go on holding it.
+bool Preparer::hands_full(double duration_s) {
+    if (!around_.holds.valid()) {
+        return false;
+    }
+    note("hands-full", "the hand that shall move holds a prop", "throw it first");
+    result_.movement =
+        make_carry(context_, {.radius_m = radius(around_.holds), .duration_s = duration_s});
+    return true;
+}
+
+void Preparer::keep(ArmMovement made, bool wants_rotation) {
+    if (wants_rotation && made.residual_rad > kShown_rad) {
+        note("cannot-turn", "the hand cannot be turned as asked within the arm's limits",
+             "let palm or fingers free, or let the figure face the target");
+    }
+    result_.movement = std::move(made.movement);
+}
+
 void Preparer::reach() {
-    const ArgumentValue* to = arguments_.find("to");
-    PUP_REQUIRE(to != nullptr);
-    const auto* actor = std::get_if<ActorIndex>(to);
-    result_.prop = arguments_.prop("to");
-    const Vec3 target = actor != nullptr ? head_of(*actor) : place_of(*to);
-    result_.gaze = {.kind = GazeKind::kPoint, .point_world = target};
-    if (around_.holds.valid()) {
-        note("hands-full", "the hand that shall reach holds a prop", "throw it first");
-        result_.movement = make_carry(
-            context_, {.radius_m = radius(around_.holds), .duration_s = ReachSpec{}.duration_s});
+    const Vec3 to = target("to");
+    if (hands_full(ReachSpec{}.duration_s)) {
         return;
     }
-    result_.movement =
-        make_reach(context_, {.side = arguments_.side("side"), .target_world = target});
+    const ReachSpec spec{.side = arguments_.side("side"),
+                         .target_world = to,
+                         .palm_to_world = optional_target("palm"),
+                         .fingers_to_world = optional_target("fingers"),
+                         .elbow_rad = elbow()};
+    keep(make_reach(context_, spec), true);
+}
+
+void Preparer::point(bool straight) {
+    const Vec3 at = target("at");
+    if (hands_full(PointSpec{}.duration_s)) {
+        return;
+    }
+    PointSpec spec{
+        .side = arguments_.side("side"), .target_world = at, .elbow_rad = elbow(), .grip = 0.3};
+    if (!straight) {
+        spec.flexion_rad = arguments_.number("flexion");
+        spec.grip = 0.8;
+    }
+    ArmMovement made = make_point(context_, spec);
+    if (made.residual_m > kMiss_m) {
+        note("cannot-aim", "the arm cannot point there within its limits",
+             "let the figure face the target first, or take the other arm");
+    }
+    keep(std::move(made), false);
+}
+
+void Preparer::look() {
+    const LookMovement made =
+        make_look(context_, {.target_world = target("at"), .trunk = arguments_.number("trunk")});
+    if (made.residual_rad > kShown_rad) {
+        note("cannot-look", "trunk and neck do not turn that far", "let it turn or face first");
+    }
+    result_.movement = made.movement;
 }
 
 void Preparer::carry(bool stay) {
@@ -424,6 +503,10 @@ Prepared Preparer::run() {
         carry(name == "hold");
     } else if (name == "reach") {
         reach();
+    } else if (name == "point" || name == "aim") {
+        point(name == "point");
+    } else if (name == "look") {
+        look();
     } else {
         PUP_REQUIRE(name == "swing");
         result_.movement = make_relax(context_, 1);

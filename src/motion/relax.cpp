@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Single arms: coming to hang, swinging to an angle, reaching.
+// Single arms: coming to hang, swinging to an angle.
 #include "arm_state.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/motion/arms.h"
@@ -108,39 +108,6 @@ class ArmSwing final : public Movement {
     FadingArm fade_;
 };
 
-class Reach final : public Movement {
- public:
-    Reach(const MotionContext& given, const ReachSpec& spec) : i_(index_of(spec.side)) {
-        const MotionContext context = arms_in_chest_space(given);
-        const figure::Figure& figure = context.figure;
-        limbs = limb_set(arm_of(spec.side));
-        duration = duration_of(context, spec.duration_s);
-        const figure::Arm& arm = figure.arms[i_];
-        const Vec3 shoulder = shoulder_chest(figure, spec.side);
-        const Vec3 way =
-            inverse(world_from_chest(figure, context.now)) * spec.target_world - shoulder;
-        const Vec3 ahead = normalized(way, {0, 0, 1});
-        const double palm_m = std::fabs(arm.hand_from_palm.translation.x);
-        const double most = 0.97 * (arm.upper_m + arm.fore_m);
-        const double reach = clamp(length(way) - palm_m, 0.3 * most, most);
-        const Vec3 along{spec.side == Side::kLeft ? 1.0 : -1.0, 0, 0};
-        own_.chest_from_hand = {shortest_arc(along, ahead, {0, 1, 0}), shoulder + ahead * reach};
-        own_.relaxed = 0.4;
-        own_.spread = 0.6;
-        offset_ =
-            InertialArm(context.now.arms[i_], context.rate.arms[i_], own_, {}, duration.seconds());
-    }
-    void sample(double t_s, Controls& out) const override {
-        out.arms[i_] = own_;
-        offset_.apply(t_s, out.arms[i_]);
-    }
-
- private:
-    int i_;
-    ArmControl own_;
-    InertialArm offset_;
-};
-
 }  // namespace
 
 MovementPtr make_relax(const MotionContext& context, double duration_s) {
@@ -148,9 +115,6 @@ MovementPtr make_relax(const MotionContext& context, double duration_s) {
 }
 MovementPtr make_arm_swing(const MotionContext& context, const ArmSwingSpec& spec) {
     return std::make_shared<ArmSwing>(context, spec);
-}
-MovementPtr make_reach(const MotionContext& context, const ReachSpec& spec) {
-    return std::make_shared<Reach>(context, spec);
 }
 
 }  // namespace puppetri::motion

@@ -3,6 +3,8 @@
 // space, so that they follow whatever the trunk does; all start from the state of the context in
 // position and velocity.
 #pragma once
+#include <optional>
+
 #include "puppetri/motion/context.h"
 #include "puppetri/motion/movement.h"
 
@@ -30,10 +32,32 @@ MovementPtr make_relax(const MotionContext& context, double duration_s);
 struct ReachSpec {
     Side side = Side::kRight;
     Vec3 target_world = {};  // for the palm; where the arm is too short it points there
+    // What the palm faces and what the fingers point to. Without either the hand goes on along the
+    // arm. Both: the palm comes first, the fingers as far as they are across it.
+    std::optional<Vec3> palm_to_world = {}, fingers_to_world = {};
+    std::optional<double> elbow_rad = {};  // ArmControl::swivel_rad; without: what is nearest
     double duration_s = 0.6;
 };
+struct ArmMovement {
+    MovementPtr movement;
+    // What the arm leaves of the way and of the turn that were asked for.
+    double residual_m = 0, residual_rad = 0;
+};
 // One hand reaches; the other arm keeps its pose.
-MovementPtr make_reach(const MotionContext& context, const ReachSpec& spec);
+ArmMovement make_reach(const MotionContext& context, const ReachSpec& spec);
+
+struct PointSpec {
+    Side side = Side::kRight;
+    Vec3 target_world = {};
+    // The line of the hand passes through the target with this bend of the elbow, or the nearest
+    // with which it can.
+    double flexion_rad = 0.12;
+    std::optional<double> elbow_rad = {};
+    double grip = 0;  // of the fingers, 0 straight
+    double duration_s = 0.6;
+};
+// One hand points at something, arm almost straight, or aims at it with a bent one.
+ArmMovement make_point(const MotionContext& context, const PointSpec& spec);
 
 struct ArmSwingSpec {
     Side side = Side::kLeft;
