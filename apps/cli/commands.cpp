@@ -14,6 +14,7 @@ std::vector<Command> all_commands() {
         prove_command(),
         explain_command(),
         sweep_command(),
+        solve_command(),
         explore_command(),
         query_command(),
         draw_command(),

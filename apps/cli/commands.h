@@ -18,6 +18,7 @@ Command draw_command();
 Command export_command();
 Command render_command();
 Command sweep_command();
+Command solve_command();
 Command explore_command();
 Command convert_command();
 Command query_command();

@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "horizon.h"
 #include "interrupt.h"
+#include "measures.h"
 #include "puppetri/base/hash.h"
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/disk_files.h"
@@ -124,30 +125,6 @@ Result<Request, std::string> parse_request(const Arguments& a, const scene::Fram
         r.warm_up = horizon.time;
     }
     return r;
-}
-
-// "queue.stay": an element's path and what is measured of it.
-Result<sim::Metric, std::string> parse_measure(const net::Net& net, const std::string& text) {
-    const std::size_t dot = text.rfind('.');
-    const std::string path = text.substr(0, dot == std::string::npos ? 0 : dot),
-                      kind = dot == std::string::npos ? "" : text.substr(dot + 1);
-    using enum sim::MetricKind;
-    for (const sim::MetricKind k : {kTokens, kMost, kBusy, kStay, kRate, kFirings}) {
-        if (kind != sim::name_of(k)) {
-            continue;
-        }
-        const std::uint32_t element =
-            sim::of_transition(k) ? net.find_transition(path).value : net.find_place(path).value;
-        if (element == net::kNoIndex) {
-            return Unexpected("there is no " +
-                              std::string(sim::of_transition(k) ? "transition " : "place ") + path +
-                              " to measure");
-        }
-        return sim::Metric{k, element};
-    }
-    return Unexpected("'" + text +
-                      "' is no measure: write PLACE.tokens, .most, .busy or .stay, or "
-                      "TRANSITION.rate or .firings");
 }
 
 bool needs_stage(const scene::Scene& scene) {

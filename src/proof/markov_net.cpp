@@ -130,7 +130,7 @@ using Spread = std::vector<std::pair<std::uint32_t, double>>;
 }  // namespace
 
 MarkovNet markov_net(const GraphRequest& asked) {
-    GraphRequest request{asked.net, {}, asked.actions, 0, asked.beat, asked.budget};
+    GraphRequest request{asked.net, asked.atoms, asked.actions, 0, asked.beat, asked.budget};
     MarkovBuilder builder(request);
     MarkovNet made;
     made.graph = builder.build();

@@ -168,6 +168,37 @@ stay: back -> rest
         rows = self.rows("--replications", 3, "--measure", "turning.stay", scene="walk.pup")
         self.assertGreater(float(rows[0]["mean"]), 0.1)
 
+    def test_what_is_solved_is_what_is_simulated_and_what_theory_says(self):
+        (self.path / "room.pup").write_text(SHOP.replace("place queue", "place free tokens 6\n  place queue")
+                                            .replace("arrive:             -> queue", "arrive: free -> queue")
+                                            .replace("-> idle\n", "-> idle + free\n  state full = not free\n"))
+        solved = subprocess.run([PROGRAM, "solve", "room.pup", "--json"], cwd=self.path, capture_output=True, text=True,
+                                timeout=60)
+        self.assertEqual(solved.returncode, 0, solved.stderr)
+        answer = json.loads(solved.stdout)
+        self.assertEqual(answer["states"], 7)
+        self.assertLess(answer["residual"], 1e-12)
+        empty = (1 - 0.5) / (1 - 0.5 ** 7)  # M/M/1/6 with rho = 1/2
+        self.assertAlmostEqual(answer["values"]["shop.chair.busy"], 1 - empty, places=10)
+        row, = self.rows("--for", "2000h", "--warm-up", "10h", "--replications", 20, "--level", "99.9%",
+                         "--measure", "shop.queue.stay", scene="room.pup")
+        self.assertLess(abs(float(row["mean"]) - answer["values"]["shop.queue.stay"]), float(row["half_width"]))
+        reached = subprocess.run([PROGRAM, "solve", "room.pup", "--reach", "shop.full", "--within", "3h", "--json"],
+                                 cwd=self.path, capture_output=True, text=True, timeout=60)
+        values = json.loads(reached.stdout)["values"]
+        self.assertGreater(values["mean time to shop.full"], 3600)
+        self.assertTrue(0 < values["P(shop.full within 3h)"] < 1)
+
+    def test_what_cannot_be_solved_is_unknown_and_says_why(self):
+        (self.path / "fixed.pup").write_text(SHOP.replace("exponential(service)", "service"))
+        done = subprocess.run([PROGRAM, "solve", "fixed.pup"], cwd=self.path, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("shop.chair", done.stderr)
+        done = subprocess.run([PROGRAM, "solve", "shop.pup", "--time", "1s"], cwd=self.path, capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("infinitely", done.stderr)
+
     def test_the_page_stands_alone(self):
         self.sweep("--vary", "shop.barbers=1..3", "--replications", 20, "--html", "page.html")
         page = (self.path / "page.html").read_text()

@@ -42,7 +42,7 @@ class MarkovNet {
     std::vector<std::uint32_t> order_;  // the states inside of an instant, each before what follows
 };
 
-// Needs   request.atoms empty; no outside events are considered.
+// No outside events are considered.
 // Cost    one engine step per edge; see long_run and at_time for the rest.
 MarkovNet markov_net(const GraphRequest& request);
 

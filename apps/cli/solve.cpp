@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+// `puppetri solve SCENE`: what a simulation would estimate, computed.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "budget_arguments.h"
+#include "commands.h"
+#include "horizon.h"
+#include "measures.h"
+#include "puppetri/io/disk_files.h"
+#include "puppetri/io/json_writer.h"
+#include "puppetri/proof/markov_net.h"
+#include "puppetri/scene/scene.h"
+#include "terminal.h"
+
+namespace puppetri::cli {
+namespace {
+
+using proof::ChainSolution;
+using proof::MarkovNet;
+
+// Above this a solution is not told as one.
+constexpr double kMostResidual = 1e-8;
+
+struct Row {
+    std::string name;
+    double value = 0;
+    std::string unit;
+};
+
+// What makes sense of a distribution: no largest numbers, no counts.
+bool solvable(sim::MetricKind kind, bool long_run) {
+    using enum sim::MetricKind;
+    return kind == kTokens || kind == kBusy || (long_run && (kind == kStay || kind == kRate));
+}
+
+double value_of(const MarkovNet& markov, const std::vector<double>& shares, const sim::Metric& m) {
+    switch (m.kind) {
+        case sim::MetricKind::kTokens:
+            return markov.mean_tokens(shares, {m.element});
+        case sim::MetricKind::kBusy:
+            return markov.share_marked(shares, {m.element});
+        case sim::MetricKind::kRate:
+            return markov.rate(shares, {m.element});
+        default: {  // Little's law
+            const double arrivals = markov.arrivals(shares, {m.element});
+            return arrivals > 0 ? markov.mean_tokens(shares, {m.element}) / arrivals : 0;
+        }
+    }
+}
+
+std::optional<SimTime> time_argument(const Arguments& arguments, const char* name,
+                                     const scene::Scene& scene, bool& good) {
+    if (!arguments.given(name)) {
+        return std::nullopt;
+    }
+    const auto horizon = parse_horizon(arguments.text(name), scene.frame_rate);
+    if (!horizon || !horizon->time) {
+        say_error(std::string(name) + ": write a time, as 40s");
+        good = false;
+        return std::nullopt;
+    }
+    return horizon->time;
+}
+
+// A named state of the scene, or a place that has a token.
+std::optional<net::Formula> state_named(const net::Net& net, const std::string& name) {
+    for (const net::NamedState& s : net.declarations().states) {
+        if (s.path == name) {
+            return s.condition;
+        }
+    }
+    if (const net::PlaceIndex place = net.find_place(name); place.valid()) {
+        return net::Formula::marked(place);
+    }
+    return std::nullopt;
+}
+
+int solve(const Arguments& arguments) {
+    const auto watched = WatchedBudget::from(arguments);
+    if (!watched) {
+        return kBadInput;
+    }
+    io::DiskFiles files;
+    const auto scene = scene::load(files, arguments.text("scene"));
+    if (!scene) {
+        say_diagnostics(scene.error());
+        return kBadInput;
+    }
+    const net::Net& net = scene->net;
+    bool good = true;
+    const std::optional<SimTime> at = time_argument(arguments, "--at", *scene, good),
+                                 within = time_argument(arguments, "--within", *scene, good);
+    if (!good) {
+        return kBadInput;
+    }
+    std::vector<net::Formula> atoms;
+    if (arguments.given("--reach")) {
+        auto formula = state_named(net, arguments.text("--reach"));
+        if (!formula) {
+            say_error("there is no state or place " + arguments.text("--reach"));
+            return kBadInput;
+        }
+        atoms.push_back(std::move(*formula));
+    } else if (within) {
+        say_error("--within: say with --reach what is to be reached");
+        return kBadInput;
+    }
+    std::vector<sim::Metric> metrics;
+    for (const std::string& text : arguments.texts("--measure")) {
+        auto metric = parse_measure(net, text);
+        if (!metric) {
+            say_error(metric.error());
+            return kBadInput;
+        }
+        if (!solvable(metric->kind, !at)) {
+            say_error(text + (at ? " is no measure of an instant: PLACE.tokens and PLACE.busy are"
+                                 : " has no long run: PLACE.tokens, .busy, .stay and "
+                                   "TRANSITION.rate have"));
+            return kBadInput;
+        }
+        metrics.push_back(*metric);
+    }
+    if (metrics.empty()) {
+        metrics = sim::all_metrics(net);
+        std::erase_if(metrics, [&](const sim::Metric& m) { return !solvable(m.kind, !at); });
+    }
+    const MarkovNet markov =
+        proof::markov_net({net, atoms, {}, 0, scene->beat.ticks, watched->budget()});
+    watched->wipe();
+    if (!markov.available()) {
+        say("UNKNOWN: this net is no finite Markov chain:");
+        for (const std::string& why : markov.why_not) {
+            say("  " + why);
+        }
+        say("  help: `puppetri sweep` estimates the same by simulation");
+        return kUnknown;
+    }
+    if (markov.graph.graph.ended != proof::Ended::kDone) {
+        say(std::string("UNKNOWN: not all states were found: ") +
+            name_of(markov.graph.graph.ended) +
+            "; a queue without bound has infinitely many: give it a room (`holds at most`)");
+        return kUnknown;
+    }
+    std::vector<Row> rows;
+    double residual = 0;
+    if (!atoms.empty()) {
+        proof::StateBits goal(markov.chain.size());
+        for (std::uint32_t i = 0; i < markov.chain.size(); ++i) {
+            if (markov.graph.graph.atoms.must_hold(markov.state[i], 0)) {
+                goal.add(i);
+            }
+        }
+        const std::string name = arguments.text("--reach");
+        if (within) {
+            const ChainSolution s = proof::reached_by(markov.chain, goal, within->seconds());
+            rows.push_back(
+                {"P(" + name + " within " + arguments.text("--within") + ")", s.values[0], ""});
+            residual = std::max(residual, s.residual);
+        }
+        const ChainSolution s = proof::mean_time_to(markov.chain, goal);
+        rows.push_back({"mean time to " + name, s.values[0], "s"});
+        residual = std::max(residual, s.residual);
+    } else {
+        const ChainSolution s =
+            at ? proof::at_time(markov.chain, at->seconds()) : proof::long_run(markov.chain);
+        residual = s.residual;
+        for (const sim::Metric& m : metrics) {
+            rows.push_back(
+                {sim::name_of(net, m), value_of(markov, s.values, m), sim::unit_of(m.kind)});
+        }
+    }
+    const bool solved = residual <= kMostResidual;
+    if (arguments.given("--json")) {
+        io::JsonWriter json;
+        json.begin_object();
+        json.member("states", static_cast<std::int64_t>(markov.chain.size()));
+        json.member("residual", residual);
+        json.member("solved", solved);
+        json.key("values").begin_object();
+        for (const Row& r : rows) {
+            json.member(r.name, r.value);
+        }
+        json.end_object();
+        json.end_object();
+        std::puts(json.take().c_str());
+    } else if (solved) {
+        std::size_t width = 0;
+        for (const Row& r : rows) {
+            width = std::max(width, r.name.size());
+        }
+        for (const Row& r : rows) {
+            std::printf("%-*s  %12.8g %s\n", static_cast<int>(width), r.name.c_str(), r.value,
+                        r.unit.c_str());
+        }
+        char text[80];
+        std::snprintf(text, sizeof text, "%u states, residual %.1e", markov.chain.size(), residual);
+        say(text);
+    }
+    if (!solved) {
+        say("UNKNOWN: the equations of the chain did not come to rest");
+        return kUnknown;
+    }
+    return kFine;
+}
+
+}  // namespace
+
+Command solve_command() {
+    std::vector<Option> options = {
+        {"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
+        {"--measure", Value::kTexts, "MEASURE", "what to compute; without: everything", false},
+        {"--at", Value::kText, "T", "at this time instead of in the long run", false},
+        {"--reach", Value::kText, "STATE", "a named state or a place: the mean time until it holds",
+         false},
+        {"--within", Value::kText, "T", "and the probability that it does within T", false},
+        {"--json", Value::kFlag, "", "as one JSON object on stdout", false}};
+    for (Option& option : budget_options()) {
+        options.push_back(std::move(option));
+    }
+    return {
+        "solve", "means and probabilities of an exponential net, computed instead of estimated",
+        "Where all durations and delays are exponential or none, a net is a Markov chain: its "
+        "long run, its state\n"
+        "at an instant and the time until something happens are solved, and the residual of the "
+        "equations is\n"
+        "printed. Ties go by `odds`, priorities hold, `servers` count. What is in the way is "
+        "named; exit 3 then.\n\n"
+        "Measures are those of `puppetri sweep`: PLACE.tokens, PLACE.busy, PLACE.stay, "
+        "TRANSITION.rate.\n\n"
+        "Examples:\n"
+        "  puppetri solve shop.pup\n"
+        "  puppetri solve shop.pup --measure shop.queue.stay --json\n"
+        "  puppetri solve shop.pup --at 60s\n"
+        "  puppetri solve shop.pup --reach full --within 1h",
+        std::move(options), solve};
+}
+
+}  // namespace puppetri::cli
