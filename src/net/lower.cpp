@@ -359,24 +359,69 @@ class Lowering {
     void refine() {
         // Outer modules first: what they add to a place that is itself refined is refined in turn.
         const std::size_t count = net().refinements.size();
+        if (count == 0) {
+            return;
+        }
+        constexpr std::uint32_t kNone = ~std::uint32_t{0};
+        std::vector<std::uint32_t> depth_of(net().places.size(), 0),
+            last(net().places.size(), kNone);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            for (const PlaceIndex inside : net().refinements[k].inside) {
+                if (last[inside.value] != k) {  // once per module
+                    last[inside.value] = k;
+                    ++depth_of[inside.value];
+                }
+            }
+        }
         std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // depth, number
         for (std::uint32_t k = 0; k < count; ++k) {
-            const PlaceIndex place = net().refinements[k].place;
-            std::uint32_t depth = 0;
-            for (const RefinementDraft& other : net().refinements) {
-                depth += std::count(other.inside.begin(), other.inside.end(), place) != 0 ? 1 : 0;
-            }
-            order.emplace_back(depth, k);
+            order.emplace_back(depth_of[net().refinements[k].place.value], k);
         }
         std::sort(order.begin(), order.end());
-        for (const auto& [depth, k] : order) {
-            refine(net().refinements[k], k);
+        touching_.assign(net().places.size(), {});
+        for (std::uint32_t t = 0; t < net().transitions.size(); ++t) {
+            for (const ArcDraft& arc : net().transitions[t].inputs) {
+                touching_[arc.place.value].push_back(t);
+            }
+            for (const OutputDraft& out : net().transitions[t].outputs) {
+                touching_[out.place.value].push_back(t);
+            }
         }
+        std::vector<std::uint32_t> ready_of(net().places.size(), kNone);
+        for (const auto& [depth, k] : order) {
+            const RefinementDraft& r = net().refinements[k];
+            if (refine(r, k)) {
+                ready_of[r.place.value] = r.finish.front().value;
+            }
+        }
+        // The ready tokens of the shadow are those of its finish, which may itself be refined.
+        const auto ready = [&](std::uint32_t place) {
+            for (std::size_t k = 0; k < count && ready_of[place] != kNone; ++k) {
+                place = ready_of[place];
+            }
+            return place;
+        };
+        each_expr(net(), [&](Expr& e) {
+            e.rename_slots([&](Slot s) {
+                if (s.kind == static_cast<std::uint32_t>(SlotKind::kReady)) {
+                    s.index = ready(s.index);
+                }
+                return s;
+            });
+        });
+        each_formula(net(), [&](Formula& f) {
+            for (Formula::Node& n : f.nodes) {
+                if (n.op == FormulaOp::kReady) {
+                    n.index = ready(n.index);
+                }
+            }
+        });
         out_.refinements = std::move(net().refinements);
         net().refinements.clear();
     }
 
-    void refine(const RefinementDraft& r, std::uint32_t number) {
+    // False: it is wrong, and left as it is.
+    bool refine(const RefinementDraft& r, std::uint32_t number) {
         PlaceDraft& place = net().places[r.place.value];
         if (place.duration && place.duration->kind != DurationKind::kOpen) {
             report(defects_, "refined-not-open", place.where, "place " + place.path,
@@ -390,7 +435,7 @@ class Lowering {
         if (r.start.empty() || r.finish.empty()) {
             report(defects_, "refined-not-open", r.where, "place " + place.path,
                    "its module has no way in or no way out", "name a start and a finish place");
-            return;
+            return false;
         }
         // The shadow itself is always there; whether it is ready is asked of the finish.
         place.duration = DurationDraft{};
@@ -404,7 +449,11 @@ class Lowering {
                 net().places[s.value].tokens.push_back(begin);
             }
         }
-        for (std::uint32_t t = 0; t < net().transitions.size(); ++t) {
+        // Only those that have arcs at the place; what they get are arcs at places inside.
+        std::vector<std::uint32_t> at_place = touching_[r.place.value];
+        std::sort(at_place.begin(), at_place.end());
+        at_place.erase(std::unique(at_place.begin(), at_place.end()), at_place.end());
+        for (const std::uint32_t t : at_place) {
             TransitionDraft& transition = net().transitions[t];
             std::vector<ArcDraft> more;
             bool leaves = false;
@@ -436,7 +485,11 @@ class Lowering {
             for (ArcDraft& arc : transition.inputs) {
                 if (arc.place == r.place && arc.kind == ArcKind::kUnlessReady) {
                     arc.place = r.finish.front();
+                    touching_[arc.place.value].push_back(t);
                 }
+            }
+            for (const ArcDraft& arc : more) {
+                touching_[arc.place.value].push_back(t);
             }
             transition.inputs.insert(transition.inputs.end(), more.begin(), more.end());
             std::vector<OutputDraft> starts;
@@ -451,30 +504,18 @@ class Lowering {
                     }
                 }
             }
+            for (const OutputDraft& start : starts) {
+                touching_[start.place.value].push_back(t);
+            }
             transition.outputs.insert(transition.outputs.end(), starts.begin(), starts.end());
             if (leaves) {
                 out_.clean.push_back({t, number});
             }
         }
-        // The ready tokens of the shadow are those of its finish.
-        const auto ready = static_cast<std::uint32_t>(SlotKind::kReady);
-        each_expr(net(), [&](Expr& e) {
-            e.rename_slots([&](Slot s) {
-                if (s.kind == ready && s.index == r.place.value) {
-                    s.index = r.finish.front().value;
-                }
-                return s;
-            });
-        });
-        each_formula(net(), [&](Formula& f) {
-            for (Formula::Node& n : f.nodes) {
-                if (n.op == FormulaOp::kReady && n.index == r.place.value) {
-                    n.index = r.finish.front().value;
-                }
-            }
-        });
+        return true;
     }
 
+    std::vector<std::vector<std::uint32_t>> touching_;  // per place: transitions with arcs at it
     Lowered out_;
     Diagnostics& defects_;
 };

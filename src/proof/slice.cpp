@@ -81,7 +81,8 @@ struct Kept {
 // The draft with what is kept, and new indices for all of it.
 class Cut {
  public:
-    Cut(const NetDraft& draft, const Kept& kept) : draft_(draft) {
+    Cut(const NetDraft& draft, const Kept& kept, const std::vector<net::Rule>& rules)
+        : draft_(draft), rules_(rules) {
         number(kept.place, place_);
         number(kept.transition, transition_);
         number(kept.datum, datum_);
@@ -109,8 +110,8 @@ class Cut {
                 to.states.push_back(s);
             }
         }
-        for (std::uint32_t i = 0; i < draft_.rules.size(); ++i) {
-            const net::Rule& r = draft_.rules[i];
+        for (std::uint32_t i = 0; i < rules_.size(); ++i) {
+            const net::Rule& r = rules_[i];
             if (std::all_of(r.operands.begin(), r.operands.end(),
                             [&](const net::Formula& f) { return whole(f); }) &&
                 std::all_of(
@@ -217,6 +218,7 @@ class Cut {
     }
 
     const NetDraft& draft_;
+    const std::vector<net::Rule>& rules_;
     DraftSlice out_;
     std::vector<std::uint32_t> place_, transition_, datum_, event_;
 };
@@ -438,7 +440,7 @@ SliceRoots roots_of(const net::Rule& rule) {
 DraftSlice slice(const net::NetDraft& draft, const SliceRoots& roots) {
     Closure closure(draft);
     closure.add(roots);
-    return Cut(draft, closure.close()).run();
+    return Cut(draft, closure.close(), draft.rules).run();
 }
 
 Components components(const net::NetDraft& draft) {
@@ -507,7 +509,8 @@ Components components(const net::NetDraft& draft) {
     return out;
 }
 
-DraftSlice component(const net::NetDraft& draft, const Components& parts, std::uint32_t which) {
+DraftSlice component(const net::NetDraft& draft, const Components& parts, std::uint32_t which,
+                     const std::vector<net::Rule>& rules) {
     Kept kept = nothing(draft);
     const auto mark = [&](const std::vector<std::uint32_t>& of, std::vector<std::uint8_t>& list) {
         for (std::size_t i = 0; i < of.size(); ++i) {
@@ -518,7 +521,11 @@ DraftSlice component(const net::NetDraft& draft, const Components& parts, std::u
     mark(parts.of_transition, kept.transition);
     mark(parts.of_datum, kept.datum);
     mark(parts.of_event, kept.event);
-    return Cut(draft, kept).run();
+    return Cut(draft, kept, rules).run();
+}
+
+DraftSlice component(const net::NetDraft& draft, const Components& parts, std::uint32_t which) {
+    return component(draft, parts, which, draft.rules);
 }
 
 }  // namespace puppetri::proof

@@ -130,14 +130,23 @@ struct JoinRule::Data {
     }
     std::string key(const Succession& s) const {
         const MovementLanes::Lane& lane = lanes.lanes[s.lane];
-        const auto of = [&](std::uint32_t item) {
-            return item < lane.places.size()
-                       ? join_key(net, play, net::PlaceIndex{lane.places[item]})
-                   : item == lane.places.size() ? std::string("rest")
-                                                : std::string("start");
+        const auto of = [&](std::uint32_t item) -> std::string {
+            if (item >= lane.places.size()) {
+                return item == lane.places.size() ? "rest" : "start";
+            }
+            std::string& known = keys_[lane.places[item]];
+            if (known.empty()) {
+                known = join_key(net, play, net::PlaceIndex{lane.places[item]});
+            }
+            return known;
         };
-        return body_key(play.cast, lane.actor) + "|" + of(s.before) + "|" + of(s.after);
+        std::string& body = bodies_[lane.actor];
+        if (body.empty()) {
+            body = body_key(play.cast, lane.actor);
+        }
+        return body + "|" + of(s.before) + "|" + of(s.after);
     }
+    mutable std::map<std::uint32_t, std::string> keys_, bodies_;  // once made
     std::string fault_words(const Succession& s, SimTime at, const motion::JoinFault& f,
                             const figure::Figure& figure) const {
         const std::string ratio =
@@ -283,12 +292,19 @@ struct JoinRule::Data {
 
     // ---- runs ----
 
+    Running& run_of_luck(std::uint32_t number) {
+        while (runs.size() <= number) {
+            runs.push_back(std::make_unique<Running>(*this, runs.size()));
+        }
+        return *runs[number];
+    }
+
     // Plays on until it has shown all that is open, or shows nothing new for long.
     void play_on(Running& r, const State& state) const {
         const std::uint64_t patience = 2 * net.transition_count() + 20;
         std::size_t missing = 0;
         for (const Succession& s : state.open) {
-            missing += r.successions.count(s) == 0 && book.entries.count(key(s)) == 0 ? 1 : 0;
+            missing += r.successions.count(s) == 0 ? 1 : 0;
         }
         while (missing > 0 && !out_of_time() && r.run.player().firings() < kMostFirings &&
                r.run.player().firings() < r.fruitful + patience && r.run.step()) {
@@ -330,8 +346,7 @@ struct JoinRule::Data {
                 continue;
             }
             const std::string k = key(s);
-            const auto known = book.entries.find(k);
-            if (known != book.entries.end()) {
+            if (book.entries.count(k) != 0) {  // by another transition
                 ++state.joins;
                 continue;
             }
@@ -597,11 +612,8 @@ struct JoinRule::Data {
                        std::string(graph == nullptr ? "" : ": not all states were looked at");
             return false;
         }
-        if (runs.empty()) {
-            runs.push_back(std::make_unique<Running>(*this, 0));
-        }
         if (complete && acyclic(*graph) && closed()) {
-            if (const auto whole = only_run(actor, *runs[0])) {
+            if (const auto whole = only_run(actor, run_of_luck(0))) {
                 if (whole->bad) {
                     return refute(*whole->bad, 0, actor, v);
                 }
@@ -614,16 +626,20 @@ struct JoinRule::Data {
                 return true;
             }
         }
+        // Figures that do the same have been measured.
+        std::erase_if(state.open, [&](const Succession& s) {
+            const bool known = book.entries.count(key(s)) != 0;
+            state.joins += known ? 1 : 0;
+            return known;
+        });
         const std::uint32_t luck = complete ? kRuns : 1;
         for (std::uint32_t i = 0; i < luck && !state.open.empty() && !out_of_time(); ++i) {
             if (i > 0 && runs[0]->chooser.answers().empty()) {
                 break;  // there is nothing to be lucky in
             }
-            if (i == runs.size()) {
-                runs.push_back(std::make_unique<Running>(*this, i));
-            }
-            play_on(*runs[i], state);
-            if (const auto bad = measure(*runs[i], state)) {
+            Running& run = run_of_luck(i);
+            play_on(run, state);
+            if (const auto bad = measure(run, state)) {
                 return refute(*bad, i, actor, v);
             }
         }

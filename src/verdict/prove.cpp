@@ -214,7 +214,7 @@ class Prover {
         for (const std::uint32_t i : group) {
             rules.push_back(works_[i].asked.rule);
         }
-        return Part::of(parts_.draft_of(which, std::move(rules)), theatre_, play_);
+        return Part::of(parts_.draft_of(which, rules), theatre_, play_);
     }
 
     // Rules about the whole net, asked of each part: all parts keep them, or (for rest) one does.

@@ -128,10 +128,8 @@ bool Splitting::splits(const Asked& asked) {
     }
 }
 
-net::NetDraft Splitting::draft_of(std::uint32_t part, std::vector<net::Rule> rules) const {
-    net::NetDraft draft = lowered_;
-    draft.rules = std::move(rules);
-    return proof::component(draft, parts_, part).draft;
+net::NetDraft Splitting::draft_of(std::uint32_t part, const std::vector<net::Rule>& rules) const {
+    return proof::component(lowered_, parts_, part, rules).draft;
 }
 
 std::vector<std::uint32_t> Splitting::read_by(const Asked& asked) const {

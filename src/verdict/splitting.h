@@ -26,7 +26,7 @@ class Splitting {
     // The parts that a rule reads; empty: no part in particular, or the whole net.
     std::vector<std::uint32_t> read_by(const Asked& asked) const;
     // A part with these rules, as far as they lie in it.
-    net::NetDraft draft_of(std::uint32_t part, std::vector<net::Rule> rules) const;
+    net::NetDraft draft_of(std::uint32_t part, const std::vector<net::Rule>& rules) const;
 
     static bool reads_everything(const Asked& asked);
     // Of what reads everything: each part can be asked by itself, and the answers put together.

@@ -36,7 +36,10 @@ struct DraftSlice {
     bool finals_left_out = false;
 };
 DraftSlice slice(const net::NetDraft& draft, const SliceRoots& roots);
-// The same for one component.
+// The same for one component; with these rules instead of the draft's, as far as they speak only
+// of it.
 DraftSlice component(const net::NetDraft& draft, const Components& parts, std::uint32_t which);
+DraftSlice component(const net::NetDraft& draft, const Components& parts, std::uint32_t which,
+                     const std::vector<net::Rule>& rules);
 
 }  // namespace puppetri::proof
