@@ -15,10 +15,10 @@ using net::FormulaOp;
 
 class Judge {
  public:
-    Judge(const scene::Scene& scene, const stage::Performance& performance)
-        : scene_(scene), performance_(performance) {}
+    Judge(const scene::Scene& scene, const stage::Performance& performance, const MarkingLog& log)
+        : scene_(scene), performance_(performance), log_(log) {}
 
-    // Nothing: the formula speaks of more than figures.
+    // Nothing: the formula speaks of more than figures and tokens.
     std::optional<bool> holds(const Formula& f, SimTime at) const {
         std::vector<bool> t;
         for (const Formula::Node& n : f.nodes) {
@@ -26,6 +26,15 @@ class Judge {
                 case FormulaOp::kConstant:
                     t.push_back(n.count != 0);
                     break;
+                case FormulaOp::kMarked: {
+                    const auto later = std::upper_bound(log_.at.begin(), log_.at.end(), at);
+                    if (later == log_.at.begin()) {
+                        return std::nullopt;
+                    }
+                    const auto i = static_cast<std::size_t>(later - log_.at.begin()) - 1;
+                    t.push_back(log_.tokens[i][n.index] >= n.count);
+                    break;
+                }
                 case FormulaOp::kHost: {
                     const auto value = atom(n.index, at);
                     if (!value) {
@@ -89,12 +98,13 @@ class Judge {
 
     const scene::Scene& scene_;
     const stage::Performance& performance_;
+    const MarkingLog& log_;
 };
 
 }  // namespace
 
 std::optional<SimTime> judge_figures(const scene::Scene& scene, const Obligation& obligation,
-                                     stage::Stage& stage, SimTime end) {
+                                     stage::Stage& stage, const MarkingLog& log, SimTime end) {
     const auto rule = std::find_if(scene.rules().begin(), scene.rules().end(),
                                    [&](const net::Rule& r) { return r.path == obligation.rule; });
     // A limb with two masters is the stage's own warning.
@@ -106,7 +116,7 @@ std::optional<SimTime> judge_figures(const scene::Scene& scene, const Obligation
         return overlap() ? std::optional(end) : std::nullopt;
     }
     const auto performance = stage.finish(end);
-    const Judge judge(scene, *performance);
+    const Judge judge(scene, *performance, log);
     constexpr std::int64_t kSample = kTicksPerSecond / 480;
     for (std::int64_t t = 0; t <= end.ticks; t += kSample) {
         std::size_t hold = 0;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
+#include "holders.h"
 #include "puppetri/motion/own_movement.h"
 #include "puppetri/net/tables.h"
 
@@ -31,17 +33,6 @@ bool runs(const BoundCall& call) {
 
 bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return name == n; });
-}
-
-Formula any_of(std::vector<Formula> parts) {
-    if (parts.empty()) {
-        return Formula::constant(false);
-    }
-    Formula out = std::move(parts[0]);
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-        out = Formula::binary(FormulaOp::kOr, std::move(out), std::move(parts[i]));
-    }
-    return out;
 }
 
 bool is_constant(const Formula& f, bool& value) {
@@ -179,7 +170,10 @@ motion::PropIndex claimed_prop(const BoundCall& call) {
 }
 
 FigureLowering::FigureLowering(const net::Net& net, const stage::Play& play)
-    : net_(net), play_(play), calm_(play.cast.actors.size(), 1) {
+    : net_(net),
+      play_(play),
+      calm_(play.cast.actors.size(), 1),
+      holders_(std::make_unique<Holders>(net, play)) {
     for (std::uint32_t p = 0; p < net.place_count(); ++p) {
         const net::ActionIndex action = net.action(net::PlaceIndex{p});
         if (action.valid() && action.value < play.actions.size()) {
@@ -249,31 +243,6 @@ Formula FigureLowering::may_swing(std::uint32_t actor, bool left, bool right) co
     return any_of(std::move(ways));
 }
 
-// Somebody else surely has it while it flies, or while somebody else catches it.
-Formula FigureLowering::may_hold(std::uint32_t prop, const std::string& holder) const {
-    std::vector<Formula> own, others;
-    for (const ActionPlace& a : places_) {
-        if (claimed_prop(*a.call).value != prop) {
-            continue;
-        }
-        const bool flies = a.call->subject.kind == SubjectKind::kProp;
-        const std::string who =
-            flies ? "air" : play_.cast.actors[a.call->subject.actor.value].name + ".hands";
-        const Formula here = Formula::marked(net::PlaceIndex{a.place});
-        if (who == holder) {
-            own.push_back(here);
-        } else if (flies || a.call->movement == "catch") {
-            others.push_back(here);
-        }
-    }
-    if (others.empty()) {
-        return Formula::constant(true);
-    }
-    Formula free = negation(any_of(std::move(others)));
-    return own.empty() ? std::move(free)
-                       : Formula::binary(FormulaOp::kOr, any_of(std::move(own)), std::move(free));
-}
-
 Lowered FigureLowering::lower(const Formula& formula) const {
     constexpr std::size_t kMost = 8;
     const std::vector<net::HostAtom>& atoms = net_.declarations().host_atoms;
@@ -293,22 +262,32 @@ Lowered FigureLowering::lower(const Formula& formula) const {
     for (std::uint32_t values = 0; values < (1u << used.size()); ++values) {
         std::map<std::uint32_t, bool> value_of;
         std::map<std::uint32_t, std::pair<bool, bool>> lifted;  // per actor: left, right
+        struct Held {
+            std::set<std::string> named, by;
+        };
+        std::map<std::uint32_t, Held> held;  // per prop
         Formula feasible = Formula::constant(true);
         for (std::size_t i = 0; i < used.size(); ++i) {
             const bool value = ((values >> i) & 1) != 0;
             value_of[used[i]] = value;
-            if (!value || used[i] >= atoms.size()) {
-                continue;  // that a statement of figures does not hold can always be
+            if (used[i] >= atoms.size()) {
+                continue;
             }
             const net::HostAtom& atom = atoms[used[i]];
             if (atom.kind == net::HostAtom::Kind::kHolder) {
                 for (std::uint32_t p = 0; p < play_.cast.props.size(); ++p) {
                     if (play_.cast.props[p].name == atom.subject) {
-                        feasible =
-                            combine(FormulaOp::kAnd, std::move(feasible), may_hold(p, atom.value));
+                        Held& h = held[p];
+                        h.named.insert(atom.value);
+                        if (value) {
+                            h.by.insert(atom.value);
+                        }
                     }
                 }
                 continue;
+            }
+            if (!value) {
+                continue;  // that a leg is not in some phase can always be
             }
             const std::size_t dot = atom.subject.rfind('.');
             const std::string who = atom.subject.substr(0, dot),
@@ -323,6 +302,13 @@ Lowered FigureLowering::lower(const Formula& formula) const {
                 }
             }
         }
+        for (const auto& [prop, h] : held) {  // by one at a time
+            feasible = h.by.size() > 1
+                           ? Formula::constant(false)
+                           : combine(FormulaOp::kAnd, std::move(feasible),
+                                     h.by.empty() ? holders_->may_hold(prop, h.named, true)
+                                                  : holders_->may_hold(prop, h.by));
+        }
         for (const auto& [actor, legs] : lifted) {
             feasible = combine(FormulaOp::kAnd, std::move(feasible),
                                may_swing(actor, legs.first, legs.second));
@@ -334,6 +320,29 @@ Lowered FigureLowering::lower(const Formula& formula) const {
                           combine(FormulaOp::kAnd, feasible, negation(here)));
     }
     out.must = negation(std::move(may_not));
+    return out;
+}
+
+FigureLowering::~FigureLowering() = default;
+
+std::vector<std::string> FigureLowering::assumptions(const net::Rule& rule) const {
+    std::set<std::string> props;
+    for (const Formula& f : rule.operands) {
+        for (const Formula::Node& n : f.nodes) {
+            const auto& atoms = net_.declarations().host_atoms;
+            if (n.op == FormulaOp::kHost && n.index < atoms.size() &&
+                atoms[n.index].kind == net::HostAtom::Kind::kHolder) {
+                props.insert(atoms[n.index].subject);
+            }
+        }
+    }
+    std::vector<std::string> out;
+    for (std::uint32_t p = 0; p < play_.cast.props.size(); ++p) {
+        if (props.contains(play_.cast.props[p].name)) {
+            const std::vector<std::string> some = holders_->assumptions(p);
+            out.insert(out.end(), some.begin(), some.end());
+        }
+    }
     return out;
 }
 

@@ -217,6 +217,36 @@ Formula over_full(const net::Net& net, const net::Rule& rule) {
     return any;
 }
 
+constexpr std::size_t kTogether = 6;
+
+bool speaks_of_figures(const net::Rule& rule) {
+    bool figures = false, steps = false;
+    for (const Formula& f : rule.operands) {
+        for (const Formula::Node& n : f.nodes) {
+            figures = figures || n.op == FormulaOp::kHost;
+            steps = steps || n.op == FormulaOp::kFires || n.op == FormulaOp::kEvent;
+        }
+    }
+    return figures && !steps;
+}
+
+// At most one, or exactly one, of the operands as a formula.
+Formula counted(const net::Rule& rule) {
+    const auto both = [](FormulaOp op, Formula a, Formula b) {
+        return Formula::binary(op, std::move(a), std::move(b));
+    };
+    Formula one = Formula::constant(rule.kind == net::RuleKind::kMutex);
+    Formula none = Formula::constant(true);
+    // From the last to the first: none of these, at most (exactly) one of these.
+    for (std::size_t i = rule.operands.size(); i-- > 0;) {
+        const Formula not_this = Formula::unary(FormulaOp::kNot, rule.operands[i]);
+        one = both(FormulaOp::kOr, both(FormulaOp::kAnd, rule.operands[i], none),
+                   both(FormulaOp::kAnd, not_this, std::move(one)));
+        none = both(FormulaOp::kAnd, not_this, std::move(none));
+    }
+    return one;
+}
+
 // As many tokens everywhere, and the same data, as at the start.
 Formula initial_marking(const net::Net& net) {
     std::vector<std::int64_t> tokens(net.place_count(), 0);
@@ -341,6 +371,15 @@ Obligation make_obligation(const net::Net& net, const net::Rule& rule, const Hos
                 o.operands.push_back(make_operand(atom, host, atoms, &o.about_figures));
             }
             break;
+        case net::RuleKind::kMutex:
+        case net::RuleKind::kExactlyOne:
+            // What figures do is told of all operands together: who has the ball is one of them.
+            if (rule.operands.size() <= kTogether && speaks_of_figures(rule)) {
+                o.kind = net::RuleKind::kAlways;
+                o.operands.push_back(make_operand(counted(rule), host, atoms, &o.about_figures));
+                break;
+            }
+            [[fallthrough]];
         default:
             for (const Formula& operand : rule.operands) {
                 o.operands.push_back(make_operand(operand, host, atoms, &o.about_figures));

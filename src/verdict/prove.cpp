@@ -107,6 +107,10 @@ class Prover {
 
     void finish(Work& w) {
         w.done = true;
+        if (host_ && w.verdict.answer != Answer::kUnknown) {
+            const std::vector<std::string> more = host_->assumptions(w.asked.rule);
+            w.verdict.assumptions.insert(w.verdict.assumptions.end(), more.begin(), more.end());
+        }
         w.verdict.seconds = w.seconds;
         if (w.verdict.answer == Answer::kUnknown && w.verdict.reason.empty()) {
             w.verdict.reason = cancelled()   ? "stopped before an answer"

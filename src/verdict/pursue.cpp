@@ -71,6 +71,7 @@ class Attempt {
     bool play(std::uint64_t firings, double until_s, const std::atomic<bool>* cancelled,
               const Witness* script) {
         target_ = hunt_.finding->target;
+        note_marking();
         Says says = watch_.begin();
         bool maybe = says == Says::kMaybe;
         if (says == Says::kBroken && wants(Target::kBroken)) {
@@ -111,7 +112,11 @@ class Attempt {
             }
             const std::size_t before = linear_ ? actors_.listener.occurred.size() : 0;
             if (stop == run::Stop::kLimit) {
-                stop = player_.step(limits(maybe, maybe_at));
+                run::Limits limit = limits(maybe, maybe_at);
+                if (maybe && script != nullptr) {
+                    limit.until = script->until;  // as long as it was looked at
+                }
+                stop = player_.step(limit);
             }
             if (track_ != nullptr) {
                 for (const std::uint32_t e : actors_.listener.occurred) {
@@ -147,6 +152,7 @@ class Attempt {
             }
             steps_.push_back(
                 {player_.now(), std::string(theatre_.net->transition(player_.last()).path)});
+            note_marking();
             const Says late_or_not = watch_.fired(actors_.listener.occurred);
             if (linear_) {
                 linear_->occurred(std::span(actors_.listener.occurred).subspan(before));
@@ -164,7 +170,12 @@ class Attempt {
                  wants(Target::kEndless) || wants(Target::kHopeless))) {
                 return found(player_.firings());
             }
-            if (late_or_not == Says::kMaybe && !maybe) {
+            // Figures may do it while time passes, too, where no firing is.
+            const bool there =
+                hunt_.obligation->about_figures && wants(Target::kBroken) &&
+                (script != nullptr ? player_.firings() == script->violates_after
+                                   : track_ != nullptr && track_->distance() == 0);
+            if ((late_or_not == Says::kMaybe || there) && !maybe) {
                 maybe = true;
                 maybe_at = player_.now();
             }
@@ -394,13 +405,25 @@ class Attempt {
         return true;
     }
 
+    void note_marking() {
+        if (!hunt_.obligation->about_figures) {
+            return;
+        }
+        std::vector<std::uint32_t> tokens;
+        for (std::uint32_t p = 0; p < theatre_.net->place_count(); ++p) {
+            tokens.push_back(player_.tokens(net::PlaceIndex{p}));
+        }
+        log_.at.push_back(player_.now());
+        log_.tokens.push_back(std::move(tokens));
+    }
+
     bool figures() {
         if (!actors_.stage) {
             reason = "figures decide, and nobody performs them";
             return false;
         }
         const auto seen =
-            judge_figures(*theatre_.scene, *hunt_.obligation, *actors_.stage, player_.now());
+            judge_figures(*theatre_.scene, *hunt_.obligation, *actors_.stage, log_, player_.now());
         if (!seen) {
             reason = "figures decide, and in the runs that were played they keep the rule";
             return false;
@@ -431,6 +454,7 @@ class Attempt {
     Target target_ = Target::kBroken;
     bool fault_ = false;
     std::vector<Witness::Step> steps_;
+    MarkingLog log_;
     struct Seen {
         std::uint64_t firings = 0, decided = 0;
     };

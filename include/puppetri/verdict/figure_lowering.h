@@ -5,6 +5,7 @@
 // that holds whenever it may hold, one that holds only if it must.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,13 +28,17 @@ motion::LimbSet driven_limbs(const motion::BoundCall& call);
 // The prop that a call needs in the hands of its actor, or none. `fly` holds it in the air.
 motion::PropIndex claimed_prop(const motion::BoundCall& call);
 
+class Holders;  // src/verdict/holders.h
+
 class FigureLowering final : public HostLowering {
  public:
     // Both outlive it. Actions of places are numbers in play.actions.
     FigureLowering(const net::Net& net, const stage::Play& play);
+    ~FigureLowering() override;
     // Cost  2^n for n different host atoms in one formula; more than 8 are not looked into: such a
     //       formula may always hold and never must.
     Lowered lower(const net::Formula& formula) const override;
+    std::vector<std::string> assumptions(const net::Rule& rule) const override;
 
  private:
     struct ActionPlace {
@@ -41,12 +46,12 @@ class FigureLowering final : public HostLowering {
         const motion::BoundCall* call = nullptr;
     };
     net::Formula may_swing(std::uint32_t actor, bool left, bool right) const;
-    net::Formula may_hold(std::uint32_t prop, const std::string& holder) const;
 
     const net::Net& net_;
     const stage::Play& play_;
     std::vector<ActionPlace> places_;
     std::vector<std::uint8_t> calm_;  // per actor
+    std::unique_ptr<Holders> holders_;
 };
 
 // The rules that every scene has to keep, whatever it says: nobody drives a limb twice, nobody

@@ -78,6 +78,8 @@ class HostLowering {
     virtual ~HostLowering() = default;
     // A formula about one state with host atoms in it.
     virtual Lowered lower(const net::Formula& formula) const = 0;
+    // What is taken for granted when statements of this rule are told so, beside durations.
+    virtual std::vector<std::string> assumptions(const net::Rule&) const { return {}; }
 };
 
 struct Obligation {
