@@ -13,8 +13,8 @@
 namespace puppetri::motion {
 namespace {
 
-// The part of their ranges that joints use for looking: 45 degrees to the side for the trunk, 80 for
-// neck and head.
+// The part of their ranges that joints use for looking: 45 degrees to the side for the trunk, 80
+// for neck and head.
 constexpr double kOfTrunk = 0.6, kOfNeck = 0.9;
 
 // Farther to the side or up nobody looks: bending over backwards would get there, too.
@@ -62,7 +62,8 @@ LookMovement make_look(const MotionContext& context, const LookSpec& spec) {
                             0.5, 1.0};
     const LookAtOutcome outcome = look_at(
         {f.skeleton, f.limits, joints},
-        {.target_model = eyes + rotate(ahead, seen), .eye_joint = f.eyes_head, .shares = shares}, pose);
+        {.target_model = eyes + rotate(ahead, seen), .eye_joint = f.eyes_head, .shares = shares},
+        pose);
     controls_from_pose(f, pose, limb_set(Limb::kBody), controls);
     return {std::make_shared<Look>(context, controls.body, spec.duration_s),
             outcome.residual_rad + puppetri::atan2(length(cross(way, seen)), dot(way, seen))};

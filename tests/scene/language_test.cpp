@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reference of the language (docs/language.md) is true: every example that is a whole scene
-// loads and runs.
+// The pages of docs/ are true: every example that is a whole scene loads and runs.
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -10,8 +9,11 @@
 
 namespace puppetri::scene {
 
-TEST_CASE("every whole scene of docs/language.md loads without a defect and runs [unit]") {
-    std::ifstream in(PUP_SOURCE_DIR "/docs/language.md");
+namespace {
+
+// How many scenes the page has, all loaded and run.
+int scenes_of(const char* page) {
+    std::ifstream in(std::string(PUP_SOURCE_DIR "/docs/") + page);
     std::string line, text;
     bool inside = false;
     int scenes = 0;
@@ -37,7 +39,17 @@ TEST_CASE("every whole scene of docs/language.md loads without a defect and runs
             text += line + "\n";
         }
     }
-    CHECK(scenes >= 14);
+    return scenes;
+}
+
+}  // namespace
+
+TEST_CASE("every whole scene of docs/language.md loads without a defect and runs [unit]") {
+    CHECK(scenes_of("language.md") >= 14);
+}
+
+TEST_CASE("so does every whole scene of docs/inverse_kinematics.md [unit]") {
+    CHECK(scenes_of("inverse_kinematics.md") >= 1);
 }
 
 }  // namespace puppetri::scene

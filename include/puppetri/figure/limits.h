@@ -5,7 +5,7 @@
 //
 // The cone is an ellipse in the vector part of the swing's quaternion: a swing by the angle b about
 // cos(f) side + sin(f) other is inside when (sin(b/2) cos(f) / sin(A/2))^2 + (sin(b/2) sin(f) /
-// sin(B/2))^2 <= 1. That is within half a degree of an ellipse in the angles, and unlike it a
+// sin(B/2))^2 <= 1. That is within a tenth of a degree of an ellipse in the angles, and unlike it a
 // polynomial in the rotation: inverse kinematics solves it exactly.
 #pragma once
 #include <string_view>
