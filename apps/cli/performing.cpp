@@ -26,7 +26,7 @@ std::vector<Option> with_performing_options(std::vector<Option> options) {
     return options;
 }
 
-Result<verdict::Witness, int> load_witness(const std::string& path, const scene::Scene& scene) {
+Result<verdict::Witness, int> load_witness(const std::string& path, const net::Net& net) {
     const auto text = io::DiskFiles().read(path);
     if (!text) {
         say_error(path + ": " + text.error().message);
@@ -37,12 +37,12 @@ Result<verdict::Witness, int> load_witness(const std::string& path, const scene:
         say_diagnostics(witness.error());
         return Unexpected<int>(kBadInput);
     }
-    if (witness->net_hash != scene.net.hash()) {
+    if (witness->net_hash != net.hash()) {
         say_error(path + " belongs to another net: the scene has changed since; prove it again");
         return Unexpected<int>(kBadInput);
     }
     for (const verdict::Witness::Event& e : witness->events) {
-        if (!scene.net.find_event(e.path).valid()) {
+        if (!net.find_event(e.path).valid()) {
             say_error(path + ": there is no event " + e.path);
             return Unexpected<int>(kBadInput);
         }
@@ -70,7 +70,7 @@ Result<scene::PerformOptions, int> perform_options(const Arguments& arguments,
         options.horizon = *horizon;
     }
     if (arguments.given("--witness")) {
-        auto witness = load_witness(arguments.text("--witness"), scene);
+        auto witness = load_witness(arguments.text("--witness"), scene.net);
         if (!witness) {
             return Unexpected<int>(witness.error());
         }

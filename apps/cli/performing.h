@@ -23,8 +23,8 @@ std::vector<Option> with_performing_options(std::vector<Option> options);
 Result<scene::PerformOptions, int> perform_options(const Arguments& arguments,
                                                    const scene::Scene& scene);
 
-// A witness of this very scene. Says what is wrong and gives the exit code otherwise.
-Result<verdict::Witness, int> load_witness(const std::string& path, const scene::Scene& scene);
+// A witness of this very net. Says what is wrong and gives the exit code otherwise.
+Result<verdict::Witness, int> load_witness(const std::string& path, const net::Net& net);
 
 // A scene and its performance, which looks at the scene.
 struct Staged {

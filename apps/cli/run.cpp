@@ -15,6 +15,7 @@
 #include "puppetri/scene/events.h"
 #include "puppetri/scene/perform.h"
 #include "puppetri/verdict/explain.h"
+#include "run_net.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -58,7 +59,7 @@ void say_notes(const Diagnostics& notes) {
 
 // Each firing of a witness, with what begins by it.
 void tell_story(const std::string& path, const scene::Scene& scene) {
-    if (const auto witness = load_witness(path, scene); witness) {
+    if (const auto witness = load_witness(path, scene.net); witness) {
         for (const std::string& line : verdict::story(scene.net, *witness)) {
             say(line);
         }
@@ -66,6 +67,9 @@ void tell_story(const std::string& path, const scene::Scene& scene) {
 }
 
 int run(const Arguments& arguments) {
+    if (!arguments.text("scene").ends_with(".pup")) {
+        return run_net(arguments);
+    }
     io::DiskFiles files;
     const auto scene = scene::load(files, arguments.text("scene"));
     if (!scene) {
@@ -163,8 +167,9 @@ Command run_command() {
         "  puppetri run ball.pup --log log.csv --score -   - is stdout\n"
         "  puppetri run show.pup --events - --record session.txt\n"
         "  puppetri run show.pup --events session.txt --hash\n"
-        "  puppetri run duet.pup --witness out/everybody.witness.json",
-        {{"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
+        "  puppetri run duet.pup --witness out/everybody.witness.json\n"
+        "  puppetri run net.pnml --witness out/deadlock_free.witness.json   also --for 1000x",
+        {{"scene", Value::kText, "SCENE", "a scene (.pup) or a net (.pnml, .xml, .net)", true},
          {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
          {"--for", Value::kText, "HOW LONG",
           "a time (40s), frames (960f) or firings (1000x), instead of the scene's", false},

@@ -13,8 +13,9 @@ namespace puppetri::proof {
 
 namespace {
 
-// Smaller nets are explored before a second thread has started.
-constexpr std::uint64_t kWorthThreads = 20'000;
+// Smaller nets are explored before a second thread has started: that takes as long as about a
+// thousand states.
+constexpr std::uint64_t kWorthThreads = 3'000;
 
 Finding finding_of(const Search& search, std::uint32_t state) {
     Finding f;
@@ -27,7 +28,13 @@ Finding finding_of(const Search& search, std::uint32_t state) {
     if (!search.options.witnesses) {
         return f;
     }
-    f.firings = firings_to(search.net, search.form, state);
+    f.firings = firings_to(search.net, search.form, state, search.symmetry);
+    if (!search.symmetry.none()) {
+        f.marking = search.net.initial;
+        for (const std::uint32_t t : f.firings) {
+            search.net.fire(f.marking, t);
+        }
+    }
     return f;
 }
 
@@ -53,6 +60,7 @@ Exploration explore(const PlainNet& net, const ExploreOptions& options, const Bu
         owns.push_back(std::move(search.own));
         out.complete = depth_first ? owns[0].stack.empty() : owns[0].head == owns[0].next;
     }
+    out.symmetric = !search.symmetry.none();
     out.ended = search.ended;
     out.complete = (out.complete || search.finished) && out.ended == Ended::kDone;
     out.bounds.assign(net.place_count(), 0);
@@ -62,6 +70,17 @@ Exploration explore(const PlainNet& net, const ExploreOptions& options, const Bu
         out.max_tokens_per_marking = std::max(out.max_tokens_per_marking, own.most_tokens);
         for (std::uint32_t p = 0; p < own.bounds.size(); ++p) {
             out.bounds[p] = std::max(out.bounds[p], own.bounds[p]);
+        }
+    }
+    for (const Symmetry::Group& g : search.symmetry.groups) {  // what one holds, all may hold
+        for (std::uint32_t k = 0; k < g.width; ++k) {
+            std::uint32_t most = 0;
+            for (std::size_t i = k; i < g.places.size(); i += g.width) {
+                most = std::max(most, out.bounds[g.places[i]]);
+            }
+            for (std::size_t i = k; i < g.places.size(); i += g.width) {
+                out.bounds[g.places[i]] = most;
+            }
         }
     }
     for (const std::uint32_t b : out.bounds) {

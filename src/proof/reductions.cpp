@@ -91,7 +91,15 @@ ReductionNet::ReductionNet(const PlainNet& net, const ReductionGoal& goal, const
             }
         }
         std::erase_if(out.arcs, [](const ReductionArc& a) { return a.empty(); });
+        // "Fewer than none", as a place says that holds less than is given: it never fires, and no
+        // rule has to know such limits.
+        const bool never = std::any_of(out.arcs.begin(), out.arcs.end(),
+                                       [](const ReductionArc& a) { return a.limit <= a.need; });
         add(std::move(out));
+        if (never) {
+            remove_transition(t);
+            ++applied;
+        }
     }
 }
 

@@ -20,29 +20,32 @@ void go_on(Search& search, bool depth_first, std::uint64_t up_to_states) {
     }
 }
 
-// A transition that leads from one marking to another, as the explorer would fire it.
-std::uint32_t step_between(const PlainNet& net, const Marking& from, const Marking& to) {
-    std::uint32_t best = net.transition_count();
-    Marking next;
+// A transition that leads from a marking to another, up to symmetry, as the explorer would fire it;
+// `from` becomes what it makes.
+std::uint32_t step_towards(const PlainNet& net, Marking& from, const Marking& to,
+                           const Symmetry& symmetry) {
     std::uint32_t highest = 0;
-    for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
-        if (!net.enabled(from, t)) {
-            continue;
-        }
-        const std::uint32_t level = net.has_levels ? net.level[t] : 0;
-        if (level > highest) {
-            highest = level;
-            best = net.transition_count();
-        }
-        if (level < highest || best != net.transition_count()) {
-            continue;
-        }
-        next = from;
-        if (net.fire(next, t) && next == to) {
-            best = t;
+    for (std::uint32_t t = 0; net.has_levels && t < net.transition_count(); ++t) {
+        if (net.enabled(from, t)) {
+            highest = std::max(highest, net.level[t]);
         }
     }
-    return best;
+    for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
+        if (!net.enabled(from, t) || (net.has_levels && net.level[t] < highest)) {
+            continue;
+        }
+        Marking next = from;
+        if (!net.fire(next, t)) {
+            continue;
+        }
+        Marking seen = next;
+        make_canonical(symmetry, seen);
+        if (seen == to) {
+            from = std::move(next);
+            return t;
+        }
+    }
+    return net.transition_count();
 }
 
 }  // namespace
@@ -76,15 +79,17 @@ Marking marking_of(const Search::Form& form, std::uint32_t id, std::uint32_t pla
 }
 
 std::vector<std::uint32_t> firings_to(const PlainNet& net, const Search::Form& form,
-                                      std::uint32_t id) {
-    std::vector<std::uint32_t> firings;
-    Marking to = marking_of(form, id, net.place_count());
-    for (id = form.store->parent(id); id != StateStore::kNoState; id = form.store->parent(id)) {
-        Marking from = marking_of(form, id, net.place_count());
-        firings.push_back(step_between(net, from, to));
-        to = std::move(from);
+                                      std::uint32_t id, const Symmetry& symmetry) {
+    std::vector<std::uint32_t> states;
+    for (; id != StateStore::kNoState; id = form.store->parent(id)) {
+        states.push_back(id);
     }
-    std::reverse(firings.begin(), firings.end());
+    std::vector<std::uint32_t> firings;
+    Marking at = net.initial;
+    for (std::size_t i = states.size() - 1; i-- > 0;) {
+        firings.push_back(
+            step_towards(net, at, marking_of(form, states[i], net.place_count()), symmetry));
+    }
     return firings;
 }
 

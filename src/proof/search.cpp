@@ -58,6 +58,9 @@ Search::Search(const PlainNet& n, const ExploreOptions& o, const Budget& b)
         end(Ended::kMemory);
         return;
     }
+    if (options.symmetry != nullptr && !form.packing.grows) {
+        symmetry = keeping(*options.symmetry, net.initial);
+    }
     std::vector<std::uint64_t> state(form.packing.words);
     form.packing.encode(net.initial, state);
     std::uint32_t first = 0;
@@ -147,13 +150,14 @@ bool Search::new_segment(std::uint32_t& first) {
     return true;
 }
 
-void Search::grow_index() {
+void Search::grow_index(bool unclear) {
     const std::uint64_t states = (std::uint64_t{form.store->segments()} + workers)
                                  << StateStore::kSegmentBits;
     const std::uint32_t entries = StateIndex::entries_for(
         index.entries(), std::max(states, index.limit() + std::uint64_t{1}));
     // What the larger table would hold beyond the budget is not tried.
-    if (form.store->bytes() + std::uint64_t{entries} * 4 > budget.bytes || !index.make(entries)) {
+    if (form.store->bytes() + std::uint64_t{entries} * 4 > budget.bytes ||
+        !(unclear ? index.make_unclear(entries) : index.make(entries))) {
         end(Ended::kMemory);
     }
     if (index.limit() < states) {

@@ -63,6 +63,9 @@ class Search {
     std::vector<std::vector<std::uint64_t>> levels;  // of each level, from the highest; or none
     std::vector<CompiledPredicate> goals;
     CompiledPredicate final;
+    // Instances that are not told apart; none unless all invariants of the packing are symmetric:
+    // the initial marking is, and no field grows.
+    Symmetry symmetry;
 
     // What has been found: the state, or kNoState.
     std::atomic<std::uint32_t> dead{StateStore::kNoState};
@@ -84,8 +87,9 @@ class Search {
     // A new segment, and room for it in the table. Several threads: under `mutex`.
     // Gives  false if the table has to grow first.
     bool new_segment(std::uint32_t& first);
-    // Both leave the index empty: everything is to be inserted again.
-    void grow_index();
+    // Both leave the index empty: everything is to be inserted again. (`unclear`: its slices are to
+    // be cleared before.)
+    void grow_index(bool unclear = false);
     // Gives  false if a count does not fit into 32 bits, or there is no memory.
     bool widen(std::span<const std::uint32_t> marking);
     template <unsigned kWords, bool kShared>
@@ -107,7 +111,7 @@ class Search {
     std::uint64_t generation = 0;
     bool widening = false;
     Marking wider;  // to be widened for these
-    std::atomic<std::uint32_t> next_segment{0};
+    std::atomic<std::uint32_t> next_segment{0}, next_slice{0};
 
  private:
     bool make_form(Form& made);

@@ -97,9 +97,14 @@ void StateStore::drop_before(std::uint32_t id) {
     }
 }
 
-bool StateIndex::make(std::uint32_t entries) {
+void StateIndex::clear_slice(std::uint32_t slice) {
+    const std::uint32_t first = slice * kSlice, count = std::min(kSlice, entries_ - first);
+    std::memset(memory_.data() + std::uint64_t{first} * 4, 0, std::size_t{count} * 4);
+}
+
+bool StateIndex::make(std::uint32_t entries, bool clear) {
     memory_ = PageBuffer();  // first the old one, then the new one
-    PageBuffer fresh(std::uint64_t{entries} * 4, true, true);
+    PageBuffer fresh(std::uint64_t{entries} * 4, true, clear);
     memory_ = std::move(fresh);
     slots_ = reinterpret_cast<std::atomic<std::uint32_t>*>(memory_.data());
     if (slots_ == nullptr) {

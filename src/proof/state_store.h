@@ -132,7 +132,12 @@ class StateIndex {
     // For a larger table: the next size. Then everything is to be inserted again.
     static std::uint32_t entries_for(std::uint32_t entries, std::uint64_t states);
     // Gives  false when there is no memory; then the table is empty.
-    bool make(std::uint32_t entries);
+    bool make(std::uint32_t entries) { return make(entries, true); }
+    // The same but for clear_slice(i) of all slices, which several threads may share.
+    bool make_unclear(std::uint32_t entries) { return make(entries, false); }
+    static constexpr std::uint32_t kSlice = 1u << 18;  // entries
+    std::uint32_t slices() const { return (entries_ + kSlice - 1) / kSlice; }
+    void clear_slice(std::uint32_t slice);
 
     std::uint32_t home(std::uint64_t hash) const {
         return static_cast<std::uint32_t>(((hash >> 32) * entries_) >> 32);
@@ -163,6 +168,7 @@ class StateIndex {
     }
 
  private:
+    bool make(std::uint32_t entries, bool clear);
     PageBuffer memory_;
     std::atomic<std::uint32_t>* slots_ = nullptr;
     std::uint32_t entries_ = 0, limit_ = 0, id_mask_ = 0;

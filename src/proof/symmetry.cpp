@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <string>
 #include <tuple>
 
@@ -14,6 +15,8 @@ namespace {
 // In a ring of n no two of n (n - 1) / 2 pairs can be exchanged; larger ones are not looked
 // through.
 constexpr std::uint32_t kMostExchanges = 100'000;
+// Texts of predicates that are compared, in nodes.
+constexpr std::uint64_t kMostComparisons = 10'000'000;
 
 // All there is about a transition.
 using Signature = std::tuple<std::vector<std::uint64_t>, std::uint32_t, std::uint8_t>;
@@ -65,6 +68,8 @@ bool same_inner_names(const Instance& a, const Instance& b) {
 // prefix -> what lies below it, for each dot in the names.
 using Instances = std::map<std::string, std::map<std::string, Instance>>;  // parent, child
 
+const std::string kNumbered = "#";  // the parent of what has numbers instead of dots
+
 void collect(std::span<const std::string_view> names, bool places, Instances& out) {
     for (std::uint32_t i = 0; i < names.size(); ++i) {
         const std::string_view name = names[i];
@@ -77,6 +82,12 @@ void collect(std::span<const std::string_view> names, bool places, Instances& ou
             (places ? instance.places : instance.transitions)
                 .emplace_back(std::string(name.substr(dot + 1)), i);
             begin = dot + 1;
+        }
+        const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+        if (begin == 0 && digits > 0 && digits < name.size()) {
+            Instance& instance = out[kNumbered][std::string(name.substr(digits))];
+            (places ? instance.places : instance.transitions)
+                .emplace_back(std::string(name.substr(0, digits)), i);
         }
     }
 }
@@ -128,6 +139,9 @@ class Finder {
 
  private:
     bool exchanges(const Instance& a, const Instance& b) {
+        if (exchanges_left_ == 0) {
+            return false;
+        }
         --exchanges_left_;
         std::vector<std::uint32_t> touched;
         for (std::size_t k = 0; k < a.places.size(); ++k) {
@@ -233,35 +247,88 @@ Symmetry interchangeable_instances(const PlainNet& net,
 }
 
 void make_canonical(const Symmetry& symmetry, std::span<std::uint32_t> marking) {
-    std::vector<std::uint32_t> rows, order, sorted;
+    std::vector<std::uint32_t> rows, order;
     for (const Symmetry::Group& g : symmetry.groups) {
-        rows.clear();
-        order.clear();
-        for (const std::uint32_t p : g.places) {
-            rows.push_back(marking[p]);
-        }
-        for (std::uint32_t i = 0; i < g.count; ++i) {
-            order.push_back(i);
-        }
-        const auto row = [&](std::uint32_t i) { return rows.begin() + i * g.width; };
-        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            const auto both = std::mismatch(row(a), row(a) + g.width, row(b));
-            return both.first != row(a) + g.width ? *both.first < *both.second : a < b;
-        });
-        for (std::uint32_t i = 0; i < g.count; ++i) {
+        const auto place = [&](std::uint32_t i, std::uint32_t k) {
+            return g.places[std::size_t{i} * g.width + k];
+        };
+        const auto less = [&](std::uint32_t a, std::uint32_t b) {
             for (std::uint32_t k = 0; k < g.width; ++k) {
-                marking[g.places[i * g.width + k]] = rows[order[i] * g.width + k];
+                const std::uint32_t x = marking[place(a, k)], y = marking[place(b, k)];
+                if (x != y) {
+                    return x < y;
+                }
             }
+            return false;
+        };
+        // One firing moves few rows: most are in order.
+        std::uint32_t i = 1;
+        while (i < g.count && !less(i, i - 1)) {
+            ++i;
+        }
+        if (i == g.count) {
+            continue;
+        }
+        order.resize(g.count);
+        std::iota(order.begin(), order.end(), 0u);
+        std::stable_sort(order.begin(), order.end(), less);
+        rows.clear();
+        for (const std::uint32_t from : order) {
+            for (std::uint32_t k = 0; k < g.width; ++k) {
+                rows.push_back(marking[place(from, k)]);
+            }
+        }
+        for (std::size_t n = 0; n < rows.size(); ++n) {
+            marking[g.places[n]] = rows[n];
         }
     }
 }
 
-Symmetry respecting(const Symmetry& symmetry, const Predicate& predicate) {
+namespace {
+
+// Of each group those that are the same as the first, and so on with the rest.
+template <class Same>
+Symmetry split(const Symmetry& symmetry, Same&& same) {
     Symmetry out;
+    for (const Symmetry::Group& g : symmetry.groups) {
+        std::vector<std::uint32_t> rest(g.count);
+        std::iota(rest.begin(), rest.end(), 0u);
+        while (rest.size() > 1) {
+            std::vector<std::uint32_t> group = {rest.front()}, others;
+            for (std::size_t i = 1; i < rest.size(); ++i) {
+                (same(g, rest.front(), rest[i]) ? group : others).push_back(rest[i]);
+            }
+            if (group.size() > 1) {
+                Symmetry::Group part;
+                part.count = static_cast<std::uint32_t>(group.size());
+                part.width = g.width;
+                part.transitions_width = g.transitions_width;
+                for (const std::uint32_t i : group) {
+                    const auto add = [i](const std::vector<std::uint32_t>& from, std::size_t width,
+                                         std::vector<std::uint32_t>& to) {
+                        const auto at = from.begin() + static_cast<std::ptrdiff_t>(i * width);
+                        to.insert(to.end(), at, at + static_cast<std::ptrdiff_t>(width));
+                    };
+                    add(g.places, g.width, part.places);
+                    add(g.transitions, g.transitions_width, part.transitions);
+                }
+                out.groups.push_back(std::move(part));
+            }
+            rest = std::move(others);
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+Symmetry respecting(const Symmetry& symmetry, const Predicate& predicate) {
     std::uint32_t places = 0;
+    std::uint64_t pairs = 0;
     const auto reach = [&](std::uint32_t p) { places = std::max(places, p + 1); };
     for (const Symmetry::Group& g : symmetry.groups) {
         std::for_each(g.places.begin(), g.places.end(), reach);
+        pairs += std::uint64_t{g.count} * g.count;
     }
     for (const LinearSum& sum : predicate.sums) {
         for (const LinearSum::Term& term : sum.terms) {
@@ -269,32 +336,40 @@ Symmetry respecting(const Symmetry& symmetry, const Predicate& predicate) {
         }
     }
     std::vector<std::uint32_t> to(places);
-    for (std::uint32_t p = 0; p < places; ++p) {
-        to[p] = p;
-    }
-    for (const Predicate::Node& n : predicate.nodes) {
-        if (n.op == Predicate::Op::kEnabled || n.op == Predicate::Op::kNoneEnabled) {
-            return out;  // cannot be renamed without the net
-        }
+    std::iota(to.begin(), to.end(), 0u);
+    const bool asks =
+        std::any_of(predicate.nodes.begin(), predicate.nodes.end(), [](const Predicate::Node& n) {
+            return n.op == Predicate::Op::kEnabled || n.op == Predicate::Op::kNoneEnabled;
+        });
+    if (asks || pairs * predicate.nodes.size() > kMostComparisons) {
+        return {};
     }
     const auto root = static_cast<std::uint32_t>(predicate.nodes.size() - 1);
     const std::string before = canonical_text(predicate, root, to);
-    for (const Symmetry::Group& g : symmetry.groups) {
-        bool same = true;
-        for (std::uint32_t i = 0; i + 1 < g.count && same; ++i) {
-            std::vector<std::uint32_t> swapped = to;
+    return split(symmetry, [&](const Symmetry::Group& g, std::uint32_t a, std::uint32_t b) {
+        const auto swap = [&] {
             for (std::uint32_t k = 0; k < g.width; ++k) {
-                const std::uint32_t p = g.places[i * g.width + k],
-                                    q = g.places[(i + 1) * g.width + k];
-                std::swap(swapped[p], swapped[q]);
+                std::swap(to[g.places[std::size_t{a} * g.width + k]],
+                          to[g.places[std::size_t{b} * g.width + k]]);
             }
-            same = canonical_text(predicate, root, swapped) == before;
+        };
+        swap();
+        const bool same = canonical_text(predicate, root, to) == before;
+        swap();
+        return same;
+    });
+}
+
+Symmetry keeping(const Symmetry& symmetry, std::span<const std::uint32_t> marking) {
+    return split(symmetry, [&](const Symmetry::Group& g, std::uint32_t a, std::uint32_t b) {
+        for (std::uint32_t k = 0; k < g.width; ++k) {
+            if (marking[g.places[std::size_t{a} * g.width + k]] !=
+                marking[g.places[std::size_t{b} * g.width + k]]) {
+                return false;
+            }
         }
-        if (same) {
-            out.groups.push_back(g);
-        }
-    }
-    return out;
+        return true;
+    });
 }
 
 }  // namespace puppetri::proof

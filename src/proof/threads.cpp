@@ -72,12 +72,20 @@ void Worker<kWords, kShared>::rendezvous() {
                 s_.end(Ended::kMemory);
             }
             s_.widening = false;
+            s_.next_slice = s_.index.slices();  // it is clear
         } else {
-            s_.grow_index();
+            s_.grow_index(true);
+            s_.next_slice = 0;
         }
         s_.next_segment = 0;
     });
+    // Fresh memory is made where it is first written to: that is shared too.
+    for (std::uint32_t slice = 0; !s_.stop && (slice = s_.next_slice++) < s_.index.slices();) {
+        s_.index.clear_slice(slice);
+    }
+    meet([] {});
     adopt_form();
+    other_form_ = kWords != 0 && words_ != kWords;
     if (!s_.stop) {
         const std::uint32_t segments = s_.form.store->segments();
         while (true) {
@@ -85,7 +93,11 @@ void Worker<kWords, kShared>::rendezvous() {
             if (segment >= segments) {
                 break;
             }
-            s_.template insert_segment<kWords, true>(segment);
+            if (other_form_) {
+                s_.template insert_segment<0, true>(segment);
+            } else {
+                s_.template insert_segment<kWords, true>(segment);
+            }
         }
     }
     meet([&] { s_.pause = false; });
@@ -113,15 +125,27 @@ void Worker<kWords, kShared>::want_wider() {
 }
 
 template <unsigned kWords, bool kShared>
-void Worker<kWords, kShared>::share() {
+bool Worker<kWords, kShared>::share() {
     Range range;
     while (!s_.stop) {
+        if (other_form_) {  // another worker goes on, with all that is left
+            const std::lock_guard<std::mutex> lock(s_.mutex);
+            note_fill();
+            if (range.from < range.to) {
+                s_.waiting.push_back(range);
+                s_.awake.notify_one();
+            }
+            return false;
+        }
         if (s_.pause) {
             rendezvous();
             continue;
         }
         if (!reserve()) {
             break;
+        }
+        if (other_form_) {
+            continue;
         }
         if (range.from == range.to) {
             if (own_.head < own_.next) {
@@ -163,20 +187,35 @@ void Worker<kWords, kShared>::share() {
     --s_.workers;
     s_.awake.notify_all();
     s_.gate.notify_all();
+    return true;
 }
 
 namespace {
 
-template <unsigned kWords>
+// Fields that grow may come to need more words: then each thread goes on with another worker.
+void body(Search& search, Own& own) {
+    for (bool done = false; !done;) {
+        switch (search.form.packing.words) {
+            case 1:
+                done = Worker<1, true>(search, own).share();
+                break;
+            case 2:
+                done = Worker<2, true>(search, own).share();
+                break;
+            default:
+                done = Worker<0, true>(search, own).share();
+        }
+    }
+}
+
 void work(Search& search, std::vector<Own>& owns) {
-    const auto body = [&](Own& own) { Worker<kWords, true>(search, own).share(); };
 #if !defined(__EMSCRIPTEN__) || defined(__EMSCRIPTEN_PTHREADS__)
     std::vector<std::thread> threads;
     for (std::size_t i = 1; i < owns.size(); ++i) {
-        threads.emplace_back([&, i] { body(owns[i]); });
+        threads.emplace_back([&, i] { body(search, owns[i]); });
     }
 #endif
-    body(owns[0]);
+    body(search, owns[0]);
 #if !defined(__EMSCRIPTEN__) || defined(__EMSCRIPTEN_PTHREADS__)
     for (std::thread& t : threads) {
         t.join();
@@ -213,14 +252,7 @@ std::vector<Own> run_together(Search& search, unsigned threads) {
         owns[i].next = owns[i].head = segment;
         owns[i].end = segment + StateStore::kSegment;
     }
-    // Fields that may grow may come to need more words.
-    if (search.form.packing.words == 1 && !search.form.packing.grows) {
-        work<1>(search, owns);
-    } else if (search.form.packing.words == 2 && !search.form.packing.grows) {
-        work<2>(search, owns);
-    } else {
-        work<0>(search, owns);
-    }
+    work(search, owns);
     return owns;
 }
 

@@ -71,7 +71,8 @@ class Worker {
     }
 
     // With others, until everything is expanded.
-    void share();
+    // Gives  false if the packing has got another number of words: another worker is to go on.
+    bool share();
 
     // Raises the bounds by what was seen.
     void note_bounds() {
@@ -226,6 +227,10 @@ class Worker {
             s_.stubborn->reduce(marking_, fire_, scratch_);
             enabled = fire_.data();
         }
+        if (!s_.symmetry.none()) {
+            add_representatives(id, enabled);
+            return true;
+        }
         const std::uint64_t* const state = state_.data();
         std::uint32_t count = count_;
         for (std::uint32_t w = 0; w < set_words_; ++w) {
@@ -247,6 +252,30 @@ class Worker {
         own_.edges += count - count_;
         count_ = count;
         return true;
+    }
+
+    // The successors' representatives: unpacked, sorted, packed again.
+    void add_representatives(std::uint32_t id, const std::uint64_t* enabled) {
+        for (std::uint32_t t = 0; t < s_.net.transition_count(); ++t) {
+            if ((enabled[t / 64] >> (t & 63) & 1) == 0) {
+                continue;
+            }
+            const std::uint64_t* const change = changes_ + std::uint64_t{t} * words();
+            const std::span<std::uint64_t> made(batch_.data() + std::uint64_t{count_} * words(),
+                                                words());
+            for (std::uint32_t i = 0; i < words(); ++i) {
+                made[i] = state_[i] + change[i];
+            }
+            s_.form.packing.decode(made, marking_);
+            make_canonical(s_.symmetry, marking_);
+            s_.form.packing.encode(marking_, made);
+            hashes_[count_] = hash_of<kWords>(made.data(), words_);
+            labels_[count_] = t;
+            parents_[count_] = id;
+            s_.index.prefetch(hashes_[count_]);
+            ++count_;
+            ++own_.edges;
+        }
     }
 
     const std::uint64_t* of_highest_level(const std::uint64_t* enabled) {
@@ -413,6 +442,7 @@ class Worker {
     std::uint32_t words_ = 1, set_words_ = 1, capacity_ = 0, count_ = 0;
     std::uint32_t batches_ = 0;
     bool depth_first_ = false;
+    bool other_form_ = false;  // after a rendezvous: the packing is for another worker
     std::vector<std::uint64_t> state_, batch_, hashes_, fire_;
     std::vector<std::uint32_t> labels_, parents_;
     Marking marking_, wanted_;

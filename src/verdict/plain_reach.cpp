@@ -59,16 +59,85 @@ class OpenGoals {
     std::vector<std::uint32_t> open_;
 };
 
-void explore_for(PlainSession& session, OpenGoals& open, const proof::Budget& budget) {
-    const std::vector<Predicate> goals = open.list();
+// Instances that none of the predicates tells apart.
+proof::Symmetry respecting(PlainSession& session, std::span<const Predicate> predicates) {
+    proof::Symmetry symmetry = proof::keeping(session.symmetry(), session.plain().initial);
+    for (const Predicate& p : predicates) {
+        if (symmetry.none()) {
+            break;
+        }
+        symmetry = proof::respecting(symmetry, proof::told_in_tokens(p, session.plain()));
+    }
+    return symmetry;
+}
+
+// A smaller net with the same markings as far as the predicates see them.
+struct Seen {
+    proof::Reduction reduction;
+    std::vector<Predicate> goals;  // of the smaller net
+};
+Seen reduced_for(PlainSession& session, std::span<const Predicate> goals) {
+    const proof::PlainNet& net = session.plain();
+    proof::ReductionGoal goal;
+    goal.preserves = proof::Preserves::kReachability;
+    goal.keep.assign(net.place_count(), 0);
+    for (const Predicate& p : goals) {
+        for (const std::uint32_t place : proof::places_of(p, net)) {
+            goal.keep[place] = 1;
+        }
+    }
+    Seen seen{.reduction = proof::reduce(net, goal, session.share(0.1, 1))};
+    for (const Predicate& p : goals) {
+        seen.goals.push_back(proof::told_in_tokens(p, net, seen.reduction.now));
+    }
+    return seen;
+}
+
+// Which of the predicates are met: up to symmetry where there is some, else on the reduced net.
+struct Explored {
+    std::vector<Truth> reached;
+    How how = How::kExploration;
+    Firings way;  // to the first one
+};
+Explored explored(PlainSession& session, std::span<const Predicate> goals,
+                  const proof::Budget& budget, bool with_way) {
+    Explored out;
     proof::ExploreOptions options;
     options.goals = goals;
     options.stop_when_found = true;
-    const proof::Exploration e = proof::explore(session.plain(), options, budget);
+    options.witnesses = with_way;
+    const proof::Symmetry symmetry = respecting(session, goals);
+    Seen seen;
+    if (!symmetry.none()) {
+        options.symmetry = &symmetry;
+        out.how = How::kSymmetry;
+    } else {
+        seen = reduced_for(session, goals);
+        if (seen.reduction.rules_applied > 0) {
+            options.goals = seen.goals;
+            out.how = How::kReduced;
+        }
+    }
+    const bool reduced = out.how == How::kReduced;
+    const proof::Exploration e =
+        proof::explore(reduced ? seen.reduction.net : session.plain(), options, budget);
+    if (out.how == How::kSymmetry && !e.symmetric) {
+        out.how = How::kExploration;
+    }
     const bool all_seen = e.ended == Ended::kDone && e.complete;
-    open.decide(How::kExploration, [&](std::uint32_t i) {
-        return e.goals[i].found ? Truth::kTrue : all_seen ? Truth::kFalse : Truth::kUnknown;
-    });
+    for (const proof::Finding& f : e.goals) {
+        out.reached.push_back(f.found ? Truth::kTrue : all_seen ? Truth::kFalse : Truth::kUnknown);
+    }
+    if (with_way && e.goals[0].found) {
+        out.way = reduced ? seen.reduction.original(session.plain(), e.goals[0].firings, false)
+                          : e.goals[0].firings;
+    }
+    return out;
+}
+
+void explore_for(PlainSession& session, OpenGoals& open, const proof::Budget& budget) {
+    const Explored e = explored(session, open.list(), budget, false);
+    open.decide(e.how, [&](std::uint32_t i) { return e.reached[i]; });
 }
 
 void ask_diagrams(proof::SymbolicSpace* space, OpenGoals& open, const PlainSession& session) {
@@ -98,6 +167,25 @@ proof::Reduction reduced_for_death(PlainSession& session, const Predicate& final
         goal.keep.assign(session.plain().place_count(), 1);
     }
     return proof::reduce(session.plain(), goal, budget);
+}
+
+// Instances that death does not tell apart, in the reduced net.
+proof::Symmetry symmetry_of(PlainSession& session, const proof::Reduction& reduced,
+                            const Predicate& final) {
+    std::vector<std::string_view> places, transitions;
+    for (const std::uint32_t p : reduced.place_of) {
+        places.push_back(session.net().place(net::PlaceIndex{p}).path);
+    }
+    for (std::uint32_t t = 0; t < reduced.net.transition_count(); ++t) {
+        const auto row = reduced.sequences.row(t);
+        transitions.push_back(row.empty()
+                                  ? std::string_view()
+                                  : session.net().transition(net::TransitionIndex{row[0]}).path);
+    }
+    proof::Symmetry symmetry = proof::interchangeable_instances(reduced.net, places, transitions);
+    return final.is_constant(false)
+               ? symmetry
+               : proof::respecting(symmetry, proof::told_in_tokens(final, session.plain()));
 }
 
 void decide_without_states(PlainSession& session, OpenGoals& open) {
@@ -174,12 +262,14 @@ Decision decide_dead(PlainSession& session, const Predicate& final) {
         }
     }
     const proof::Reduction reduced = reduced_for_death(session, final);
+    const proof::Symmetry symmetry = symmetry_of(session, reduced, final);
     const auto explored = [&](const proof::Budget& budget, bool stubborn) {
         proof::ExploreOptions options;
         options.find_dead = true;
         options.final = everywhere ? nullptr : &final;
         options.stop_when_found = true;
         options.reduce = stubborn;
+        options.symmetry = &symmetry;
         const proof::Exploration e = proof::explore(reduced.net, options, budget);
         return e.dead.found                            ? Truth::kTrue
                : e.ended == Ended::kDone && e.complete ? Truth::kFalse
@@ -210,15 +300,9 @@ Decision decide_dead(PlainSession& session, const Predicate& final) {
     return {truth, How::kStubborn};
 }
 
-Firings way_to(PlainSession& session, const Predicate& goal) {
-    const auto explored = [&](const proof::Budget& budget) -> Firings {
-        proof::ExploreOptions options;
-        options.goals = {&goal, 1};
-        options.stop_when_found = true;
-        options.witnesses = true;
-        proof::Exploration e = proof::explore(session.plain(), options, budget);
-        return e.goals[0].found ? Firings(std::move(e.goals[0].firings)) : std::nullopt;
-    };
+namespace {
+
+Firings some_way_to(PlainSession& session, const Predicate& goal) {
     const auto drawn = [&](proof::SymbolicSpace* space) -> Firings {
         if (space == nullptr) {
             return std::nullopt;
@@ -228,19 +312,47 @@ Firings way_to(PlainSession& session, const Predicate& goal) {
     };
     proof::Budget few = session.share(0.3);
     few.states = 300'000;
-    Firings way = explored(few);
-    if (!way) {
-        way = drawn(session.quick_symbolic());
+    Explored e = explored(session, {&goal, 1}, few, true);
+    if (e.way.has_value()) {
+        return std::move(e.way);
     }
-    if (!way && !session.too_many_to_visit()) {
-        way = explored(session.share(0.6));
+    Firings way = drawn(session.quick_symbolic());
+    if (way.has_value()) {
+        return way;
     }
-    return way ? std::move(way) : drawn(session.symbolic(0.9));
+    if (!session.too_many_to_visit()) {
+        e = explored(session, {&goal, 1}, session.share(0.6), true);
+        if (e.way.has_value()) {
+            return std::move(e.way);
+        }
+    }
+    return drawn(session.symbolic(0.9));
+}
+
+}  // namespace
+
+// Reductions fire first what nobody sees: it may be met before.
+Firings way_to(PlainSession& session, const Predicate& goal) {
+    Firings way = some_way_to(session, goal);
+    if (!way.has_value()) {
+        return way;
+    }
+    proof::Marking marking = session.plain().initial;
+    for (std::size_t i = 0; i < way->size(); ++i) {
+        if (goal.holds(session.plain(), marking)) {
+            way->resize(i);
+            break;
+        }
+        session.plain().fire(marking, (*way)[i]);
+    }
+    return way;
 }
 
 Firings way_to_death(PlainSession& session, const Predicate& final) {
     const proof::Reduction reduced = reduced_for_death(session, final);
+    const proof::Symmetry symmetry = symmetry_of(session, reduced, final);
     proof::ExploreOptions options;
+    options.symmetry = &symmetry;
     options.find_dead = true;
     options.final = final.is_constant(false) ? nullptr : &final;
     options.witnesses = true;

@@ -27,6 +27,8 @@ const char* techniques_of(How how) {
             return "STATE_EQUATION TOPOLOGICAL";
         case How::kExploration:
             return "EXPLICIT STATE_COMPRESSION";
+        case How::kSymmetry:
+            return "EXPLICIT STATE_COMPRESSION SYMMETRIES";
         case How::kReduced:
             return "EXPLICIT STRUCTURAL_REDUCTION STATE_COMPRESSION";
         case How::kStubborn:
@@ -49,6 +51,8 @@ const char* method_of(How how) {
             return "state equation";
         case How::kExploration:
             return "all markings";
+        case How::kSymmetry:
+            return "markings up to symmetry";
         case How::kReduced:
             return "all markings of the reduced net";
         case How::kStubborn:
@@ -97,6 +101,20 @@ const proof::Marking& PlainSession::bounds() {
         }
     }
     return *bounds_;
+}
+
+const proof::Symmetry& PlainSession::symmetry() {
+    if (!symmetry_.has_value()) {
+        std::vector<std::string_view> places, transitions;
+        for (std::uint32_t p = 0; p < net_.place_count(); ++p) {
+            places.push_back(net_.place(net::PlaceIndex{p}).path);
+        }
+        for (std::uint32_t t = 0; t < net_.transition_count(); ++t) {
+            transitions.push_back(net_.transition(net::TransitionIndex{t}).path);
+        }
+        symmetry_ = proof::interchangeable_instances(plain(), places, transitions);
+    }
+    return *symmetry_;
 }
 
 proof::SymbolicSpace* PlainSession::symbolic(double fraction) {

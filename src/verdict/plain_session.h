@@ -16,6 +16,7 @@
 #include "puppetri/proof/plain_net.h"
 #include "puppetri/proof/predicate.h"
 #include "puppetri/proof/symbolic.h"
+#include "puppetri/proof/symmetry.h"
 #include "puppetri/proof/temporal.h"
 #include "puppetri/verdict/contest.h"
 
@@ -28,7 +29,8 @@ enum class How : std::uint8_t {
     kWalk,         // met at random
     kEquation,     // state equation
     kExploration,  // every marking, one by one
-    kReduced,      // the same on a reduced net
+    kSymmetry,     // one marking for all that swaps of instances make of it
+    kReduced,      // every marking of a reduced net
     kStubborn,     // the same with stubborn sets
     kDiagrams,     // decision diagrams
 };
@@ -61,6 +63,9 @@ class PlainSession {
     // Upper bounds of places from semiflows; large where none is known.
     const proof::Marking& bounds();
 
+    // Interchangeable instances, found by the names of places and transitions.
+    const proof::Symmetry& symmetry();
+
     // The symbolic state space, if it can be made in this share of the time (a first quick look
     // takes two seconds at most). Null: not within it.
     proof::SymbolicSpace* quick_symbolic();
@@ -83,6 +88,7 @@ class PlainSession {
     proof::Plain plain_;
     proof::Meter meter_;
     std::optional<proof::Marking> bounds_;
+    std::optional<proof::Symmetry> symmetry_;
     std::unique_ptr<proof::SymbolicSpace> space_;
     std::unique_ptr<Markings> markings_;
     bool listed_ = false;

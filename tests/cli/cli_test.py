@@ -416,6 +416,23 @@ class Prove(Cli):
         self.assertIn("keeps_everybody", scene.read_text())
         self.assertEqual(self.prove(scene).returncode, 0)
 
+    def test_a_witness_of_a_net_is_played_to_where_nothing_fires(self):
+        net = self.path / "fork.net"
+        net.write_text("tr t a -> b\ntr u b -> a\ntr v a -> c\npl a (1)\n")
+        done = self.prove(net, "-o", self.path / "out")
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        played = run("run", net, "--witness", self.path / "out" / "deadlock_free.witness.json")
+        self.assertEqual(played.returncode, 0, played.stderr)
+        self.assertIn("after 1 firings: c", played.stderr)
+        self.assertIn("nothing can fire any more", played.stderr)
+        # Of another net it is refused.
+        other = self.path / "other.net"
+        other.write_text("tr t a -> b\ntr v a -> c\npl a (1)\n")
+        self.assertEqual(run("run", other, "--witness", self.path / "out/deadlock_free.witness.json").returncode, 2)
+        # Without a witness: some firings, the same for the same seed.
+        hashes = {run("run", net, "--seed", "3", "--for", "5x", "--hash").stdout for _ in range(2)}
+        self.assertEqual(len(hashes), 1)
+
     def test_a_net_without_rules_is_asked_what_one_asks_of_nets(self):
         net = self.path / "ring.net"
         net.write_text("tr t a -> b\ntr u b -> a\npl a (1)\n")

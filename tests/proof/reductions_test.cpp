@@ -304,6 +304,19 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("what a limit of no tokens forbids stays forbidden [unit]") {
+    // A place that holds one token never takes the two of `t`: "unless 0 tokens are there".
+    PlainNet net;
+    net.initial = {1, 0, 0};
+    add_transition(net, {{0, 1}}, {{1, 2}}, {}, {{1, 0}});  // t
+    add_transition(net, {{1, 1}}, {{2, 1}});
+    for (const Preserves preserves : {Preserves::kDeadlock, Preserves::kReachability}) {
+        const Reduction r = reduce(net, {preserves, {0, 0, 1}}, {});
+        const Space less = whole_space(r.net);
+        CHECK(less.markings.size() == 1);
+    }
+}
+
 TEST_CASE("a net with levels comes back as it is [unit]") {
     Chance chance(1);
     PlainNet net = small_net(chance, {});

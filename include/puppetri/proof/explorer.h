@@ -13,6 +13,7 @@
 #include "puppetri/proof/graph.h"
 #include "puppetri/proof/plain_net.h"
 #include "puppetri/proof/predicate.h"
+#include "puppetri/proof/symmetry.h"
 
 namespace puppetri::proof {
 
@@ -31,6 +32,11 @@ struct ExploreOptions {
     // Stubborn sets: explore only what dead markings and goals need. Then states, edges and token
     // counts are those of the reduced graph. Ignored where it would be unsound: nets with levels.
     bool reduce = false;
+    // Interchangeable instances: markings that differ only by who of them is who are one state.
+    // Goals and `final` have to respect it (proof/symmetry.h); instances that begin differently are
+    // told apart. Then states and edges are those of the quotient, a marking that was found is one
+    // of several, and firings lead to one of them. Ignored where fields may have to grow.
+    const Symmetry* symmetry = nullptr;
 };
 
 // A marking that was looked for.
@@ -46,6 +52,7 @@ struct Exploration {
     Ended ended = Ended::kDone;
     bool complete = false;  // all reachable states (of the reduced graph) were expanded
     bool reduced = false;
+    bool symmetric = false;  // states stand for all that swaps of instances make of them
     std::uint64_t states = 0, edges = 0;
     std::uint32_t max_tokens_in_place = 0;
     std::uint64_t max_tokens_per_marking = 0;

@@ -73,6 +73,13 @@ struct Predicate {
 Predicate simplified(const Predicate& predicate, const PlainNet& net,
                      std::span<const std::uint32_t> upper);
 
+// The same predicate with the enabledness of transitions told in tokens (levels are not looked at),
+// and with places renamed: `place_to` of those of `net`, empty: none.
+Predicate told_in_tokens(const Predicate& predicate, const PlainNet& net,
+                         std::span<const std::uint32_t> place_to = {});
+// All places that the truth of the predicate depends on, ascending.
+std::vector<std::uint32_t> places_of(const Predicate& predicate, const PlainNet& net);
+
 // A predicate as a program of tests with two targets each, without stack and without state: enough
 // to be asked in every state of millions. Enabledness becomes tests of counts; the net need not
 // outlive it.

@@ -25,9 +25,9 @@ struct Symmetry {
     bool none() const { return groups.empty(); }
 };
 
-// Candidates are subtrees of the dotted names with the same inner names; kept are those where
-// exchanging neighbours maps the net's arcs, levels and flags onto themselves. The initial marking
-// need not be symmetric.
+// Candidates are subtrees of the dotted names with the same inner names, and what the same number
+// stands behind ("voting_7", "voted_7"); kept are those where exchanging two maps the net's arcs,
+// levels and flags onto themselves. The initial marking need not be symmetric.
 Symmetry interchangeable_instances(const PlainNet& net,
                                    std::span<const std::string_view> place_names,
                                    std::span<const std::string_view> transition_names);
@@ -35,9 +35,15 @@ Symmetry interchangeable_instances(const PlainNet& net,
 // The marking's representative: in each group the instances' rows of tokens in ascending order.
 void make_canonical(const Symmetry& symmetry, std::span<std::uint32_t> marking);
 
-// The groups whose swaps leave the predicate as it is, up to the order of conjunctions and
-// disjunctions. A predicate that asks for the enabledness of transitions respects none, except that
-// whether anything can fire at all respects every symmetry: ask that without this function.
+// Of each group the instances whose swaps leave the predicate as it is, up to the order of
+// conjunctions and disjunctions: a rule about two of fifty leaves the other forty-eight. A
+// predicate that asks for the enabledness of transitions respects none: tell it in tokens
+// (told_in_tokens). Whether anything can fire at all respects every symmetry: ask that without this
+// function.
 Symmetry respecting(const Symmetry& symmetry, const Predicate& predicate);
+
+// Of each group the instances that hold the same tokens in the marking. From such a marking on,
+// with every marking all its permutations are reachable.
+Symmetry keeping(const Symmetry& symmetry, std::span<const std::uint32_t> marking);
 
 }  // namespace puppetri::proof
