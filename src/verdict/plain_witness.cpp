@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "plain_witness.h"
 
+#include <utility>
+
 namespace puppetri::verdict {
 
 std::optional<Witness> witness_of_firings(const Theatre& theatre, const Obligation& obligation,
@@ -31,6 +33,28 @@ std::optional<Witness> witness_of_firings(const Theatre& theatre, const Obligati
         return std::nullopt;
     }
     return witness;
+}
+
+void conclude(const PlainFinding& finding, net::RuleKind kind, std::optional<Witness> witness,
+              const std::string& trouble, Verdict& verdict) {
+    if (finding.answer == Answer::kUnknown) {
+        return;
+    }
+    // Of these the refutation is that there is no run.
+    const bool by_none = kind == net::RuleKind::kPossible || kind == net::RuleKind::kQuasiLive;
+    if (finding.answer == Answer::kRefuted && !by_none && !witness) {
+        if (!finding.branches) {
+            verdict.reason = finding.reason + ", but no run shows it: " + trouble;
+            return;
+        }
+        verdict.notes.push_back("no single run shows it: it is about choices");
+    }
+    verdict.answer = finding.answer;
+    verdict.force = finding.force;
+    verdict.method = method_of(finding.how);
+    verdict.reason = finding.answer == Answer::kRefuted ? finding.reason : "";
+    verdict.notes.insert(verdict.notes.end(), finding.notes.begin(), finding.notes.end());
+    verdict.witness = std::move(witness);
 }
 
 }  // namespace puppetri::verdict

@@ -19,4 +19,9 @@ std::optional<Witness> witness_of_firings(const Theatre& theatre, const Obligati
                                           const std::vector<std::uint32_t>& firings,
                                           std::string& trouble);
 
+// The finding as a verdict; without a witness where one is needed (`trouble` says why there is
+// none) nothing is concluded.
+void conclude(const PlainFinding& finding, net::RuleKind kind, std::optional<Witness> witness,
+              const std::string& trouble, Verdict& verdict);
+
 }  // namespace puppetri::verdict

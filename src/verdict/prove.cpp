@@ -366,37 +366,15 @@ class Prover {
         }
     }
 
-    void settle(const Part& part, std::uint32_t number, PlainFinding f, Work& w) {
-        if (f.answer == Answer::kUnknown) {
-            return;
+    void settle(const Part& part, std::uint32_t number, const PlainFinding& f, Work& w) {
+        std::string trouble = "none was found within the budget";
+        std::optional<Witness> witness;
+        if (f.run) {
+            const Watched watch = watched(w.asked);
+            witness = witness_of_firings(theatre_, watch.obligation, *watch.reader, f,
+                                         part.in_whole(*f.run), trouble);
         }
-        const bool possible = part.asked(number).rule.kind == net::RuleKind::kPossible;
-        const bool impossible =
-            f.answer == Answer::kRefuted &&
-            (possible || part.asked(number).rule.kind == net::RuleKind::kQuasiLive);
-        const bool needs_run = f.answer == Answer::kRefuted ? !impossible : possible;
-        if (needs_run) {
-            std::string trouble = "none was found within the budget";
-            std::optional<Witness> witness;
-            if (f.run) {
-                const Watched watch = watched(w.asked);
-                witness = witness_of_firings(theatre_, watch.obligation, *watch.reader, f,
-                                             part.in_whole(*f.run), trouble);
-            }
-            if (!witness && f.answer == Answer::kRefuted && !f.branches) {
-                w.verdict.reason = f.reason + ", but no run shows it: " + trouble;
-                return;
-            }
-            if (!witness && f.branches) {
-                w.verdict.notes.push_back("no single run shows it: it is about choices");
-            }
-            w.verdict.witness = std::move(witness);
-        }
-        w.verdict.answer = f.answer;
-        w.verdict.force = f.force;
-        w.verdict.method = method_of(f.how);
-        w.verdict.reason = f.answer == Answer::kRefuted ? f.reason : "";
-        w.verdict.notes.insert(w.verdict.notes.end(), f.notes.begin(), f.notes.end());
+        conclude(f, part.asked(number).rule.kind, std::move(witness), trouble, w.verdict);
     }
 
     void by_sampling(Work& w) {
@@ -704,21 +682,6 @@ class Prover {
         l.seconds = std::clamp(left() * 0.1, 0.0, f.product.complete ? 5.0 : 2.0);
         l.cancelled = options_.budget.cancelled;
         return l;
-    }
-
-    static bool (*fault_of(Question question))(const std::string&) {
-        switch (question) {
-            case Question::kTimeGoesOn:
-                return [](const std::string& c) { return concerns(Question::kTimeGoesOn, c); };
-            case Question::kModulesEndClean:
-                return [](const std::string& c) { return concerns(Question::kModulesEndClean, c); };
-            case Question::kDataInRange:
-                return [](const std::string& c) { return concerns(Question::kDataInRange, c); };
-            case Question::kNothingStops:
-                return [](const std::string& c) { return concerns(Question::kNothingStops, c); };
-            default:
-                return nullptr;
-        }
     }
 
     // A suspect becomes REFUTED (of `possible`: PROVED) by a run. `decides` false: the run is only

@@ -3,6 +3,7 @@
 // durations of a net.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "builtin_rules.h"
@@ -12,6 +13,9 @@ namespace puppetri::verdict {
 
 // Needs  a question other than kRule and kOneOfEach.
 Finding check_question(Question question, const GraphView& view, std::uint64_t most_edges);
+
+// Which faults of a run break the answer; null: none.
+bool (*fault_of(Question question))(const std::string&);
 
 // Something lasts an interval, or is drawn: exact times do not see all runs.
 bool inexact_durations(const net::Net& net, const std::vector<proof::TickRange>& actions);
