@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sampling of editable clips, their defects, the travel of their root.
+// Sampling of editable clips, and their defects.
 #include "puppetri/motion/clip.h"
 
 #include <algorithm>
@@ -152,31 +152,6 @@ class Checker {
     Diagnostics defects_;
 };
 
-// Where the root is on the floor, and where it looks.
-Transform planar_root(const Clip& clip, double t_s) {
-    Transform at;
-    if (const VectorTrack* t = clip.find_translation(clip.root)) {
-        const Vec3 p = sample(*t, t_s, false, clip.duration_s);
-        at.translation = {p.x, 0, p.z};
-    }
-    if (const RotationTrack* r = clip.find_rotation(clip.root)) {
-        at.rotation = about_y(heading_of(sample(*r, t_s, false, clip.duration_s)));
-    }
-    return at;
-}
-
-Transform power(Transform base, double exponent) {
-    Transform result;
-    for (auto n = static_cast<std::uint64_t>(clamp(exponent, 0, 1e15)); n != 0; n >>= 1) {
-        if (n & 1) {
-            result = result * base;
-        }
-        base = base * base;
-    }
-    result.rotation = normalized(result.rotation);
-    return result;
-}
-
 }  // namespace
 
 std::string_view name_of(Interpolation interpolation) {
@@ -304,19 +279,6 @@ void sample_clip(const Clip& clip, const ClipBinding& binding, double t_s, figur
         }
         at = figure::transform_of(joint.dofs, joint.parent_from_joint_rest, values);
     }
-}
-
-Transform root_travel(const Clip& clip, double t_s) {
-    if (clip.root.empty()) {
-        return {};
-    }
-    const Transform back = inverse(planar_root(clip, 0));
-    if (!clip.loops || clip.duration_s <= 0 || t_s <= clip.duration_s) {
-        return back * planar_root(clip, t_s);
-    }
-    const double rounds = std::floor(t_s / clip.duration_s);
-    return power(back * planar_root(clip, clip.duration_s), rounds) * back *
-           planar_root(clip, t_s - rounds * clip.duration_s);
 }
 
 }  // namespace puppetri::motion

@@ -158,7 +158,10 @@ std::vector<Key> keys_between(const ClipTrack<Key>& track, double begin_s, doubl
     for (const Key& key : t.keys) {
         if (key.t_s >= begin_s - kSame_s && key.t_s <= end_s + kSame_s) {
             keys.push_back(key);
-            keys.back().t_s = clamp(key.t_s - begin_s, 0, end_s - begin_s);
+            // Exactly at the ends, whatever rounding says.
+            keys.back().t_s = key.t_s <= begin_s + kSame_s ? 0
+                              : key.t_s >= end_s - kSame_s ? end_s - begin_s
+                                                           : key.t_s - begin_s;
         }
     }
     if (keys.empty()) {  // the stretch lies before the first or after the last key

@@ -5,45 +5,13 @@
 #include <array>
 
 #include "clip_keys.h"
+#include "clip_root.h"
 #include "clip_segment.h"
 #include "puppetri/base/require.h"
 #include "puppetri/motion/clip_edit.h"
 
 namespace puppetri::motion {
 namespace {
-
-// Where the root of a clip is on the floor at an instant, as a transform.
-Transform planar_at(const Clip& clip, double t_s) {
-    Transform at;
-    if (const VectorTrack* t = clip.find_translation(clip.root)) {
-        const Vec3 p = sample(*t, t_s, false, clip.duration_s);
-        at.translation = {p.x, 0, p.z};
-    }
-    if (const RotationTrack* r = clip.find_rotation(clip.root)) {
-        at.rotation = about_y(heading_of(sample(*r, t_s, false, clip.duration_s)));
-    }
-    return at;
-}
-
-// Carries the root's tracks along by a planar motion of the world.
-void carry_root(Clip& clip, const Transform& by) {
-    for (VectorTrack& track : clip.translations) {
-        if (track.target == clip.root) {
-            for (VectorKey& key : track.keys) {
-                key.value = by * key.value;
-                key.in = rotate(by.rotation, key.in);
-                key.out = rotate(by.rotation, key.out);
-            }
-        }
-    }
-    for (RotationTrack& track : clip.rotations) {
-        if (track.target == clip.root) {
-            for (RotationKey& key : track.keys) {
-                key.value = by.rotation * key.value;
-            }
-        }
-    }
-}
 
 // All splines as Hermite segments, so that they no longer lean on their neighbours.
 template <class Key>
@@ -110,7 +78,7 @@ Clip joined(const Clip& first, const Clip& second) {
     freeze_all(out);
     freeze_all(next);
     if (!first.root.empty() && first.root == second.root) {
-        carry_root(next, planar_at(first, first.duration_s) * inverse(planar_at(second, 0)));
+        carry_root(next, planar_root(first, first.duration_s) * inverse(planar_root(second, 0)));
     }
     join_tracks(out.rotations, next.rotations, first.duration_s);
     join_tracks(out.translations, next.translations, first.duration_s);
@@ -145,8 +113,8 @@ Clip closed(const Clip& clip, double blend_s) {
     }
     freeze_all(out);
     out.loops = false;
-    const Quat turned = about_y(turn_between(heading_of(planar_at(clip, 0).rotation),
-                                             heading_of(planar_at(clip, end).rotation)));
+    const Quat turned = about_y(turn_between(heading_of(planar_root(clip, 0).rotation),
+                                             heading_of(planar_root(clip, end).rotation)));
     const bool has_turn = clip.find_rotation(clip.root) != nullptr;
 
     // Adds a change that is zero with rate zero at `begin` and the given one at `end`.
