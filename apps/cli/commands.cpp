@@ -21,6 +21,7 @@ std::vector<Command> all_commands() {
         export_command(),
         render_command(),
         convert_command(),
+        clip_command(),
     };
     // clang-format on
 }

@@ -21,6 +21,7 @@ Command sweep_command();
 Command solve_command();
 Command explore_command();
 Command convert_command();
+Command clip_command();
 Command query_command();
 
 // In the order of the help.

@@ -50,12 +50,11 @@ class Writer {
     // to be said.
     static std::string name(std::string_view text) {
         std::string plain;
-        bool quoted = text.empty() || text == "-";
         for (const char c : text) {
             plain += c == '"' ? '\'' : c == '\n' || c == '\r' ? ' ' : c;
-            quoted =
-                quoted || c == ' ' || c == '\t' || c == '#' || c == '"' || c == '\n' || c == '\r';
         }
+        const bool quoted = plain.empty() || plain == "-" || plain == ".." ||
+                            plain.find_first_of(" \t#") != std::string::npos;
         return quoted ? '"' + plain + '"' : plain;
     }
 

@@ -20,6 +20,15 @@ foreach(unit net_file xml_text pnml_document pnml pipe tina tina_lexer tina_prio
     list(APPEND net_format_sources "${CMAKE_CURRENT_SOURCE_DIR}/src/io/${unit}.cpp")
 endforeach()
 
+# Readers of motion with what they need and nothing else.
+file(GLOB motion_format_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/base/*.cpp"
+    "${CMAKE_CURRENT_SOURCE_DIR}/src/math/*.cpp")
+foreach(unit figure/skeleton figure/dof motion/clip motion/clip_root io/bvh_reader io/keys_reader io/keys_writer
+        io/gltf_document io/gltf_reader io/gltf_reader_scene io/gltf_container io/gltf_clips io/clip_tidy io/rest_pose
+        scene/file_source)
+    list(APPEND motion_format_sources "${CMAKE_CURRENT_SOURCE_DIR}/src/${unit}.cpp")
+endforeach()
+
 # The hostile tests alone, for `.ci/run`: everything under the sanitizers would take long to build.
 if(PUPPETRI_SANITIZE)
     add_executable(test_hostile_nets tests/io/net_hostile_test.cpp ${net_format_sources})
@@ -29,6 +38,13 @@ if(PUPPETRI_SANITIZE)
     puppetri_flags(test_hostile_nets)
     target_compile_definitions(test_hostile_nets PRIVATE PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     add_test(NAME hostile_nets COMMAND test_hostile_nets)
+
+    add_executable(test_hostile_motion tests/io/motion_hostile_test.cpp ${motion_format_sources})
+    target_include_directories(test_hostile_motion PRIVATE include tests)
+    target_link_libraries(test_hostile_motion PRIVATE puppetri_test_main nlohmann_json::nlohmann_json)
+    puppetri_flags(test_hostile_motion)
+    target_compile_definitions(test_hostile_motion PRIVATE PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+    add_test(NAME hostile_motion COMMAND test_hostile_motion)
 endif()
 
 # The fuzzers, by the option of tests/lang/module.cmake; their tests are short runs.
@@ -53,5 +69,24 @@ if(PUPPETRI_FUZZ)
         target_link_libraries(fuzz_${name} PRIVATE fuzzed_nets)
         add_test(NAME fuzz_${name} COMMAND fuzz_${name} -runs=2000 -seed=1 -max_len=4000 -timeout=10
             "-dict=${CMAKE_CURRENT_SOURCE_DIR}/tests/fuzz/net.dict" "${CMAKE_CURRENT_SOURCE_DIR}/tests/corpus/nets")
+    endforeach()
+
+    add_library(fuzzed_motion OBJECT ${motion_format_sources})
+    target_include_directories(fuzzed_motion PRIVATE include)
+    target_link_libraries(fuzzed_motion PUBLIC nlohmann_json::nlohmann_json)
+    target_compile_options(fuzzed_motion PRIVATE -g -O1 -ffp-contract=off -fsanitize=fuzzer-no-link,address,undefined
+        -fno-sanitize-recover=undefined)
+    foreach(target keys bvh glb gltf)
+        add_executable(fuzz_${target} tests/fuzz/motion_fuzz.cpp)
+        target_include_directories(fuzz_${target} PRIVATE include tests)
+        target_compile_definitions(fuzz_${target} PRIVATE PUP_FUZZED="fuzzed.${target}"
+            PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+        target_compile_options(fuzz_${target} PRIVATE -g -O1 -fsanitize=fuzzer,address,undefined
+            -fno-sanitize-recover=undefined)
+        target_link_options(fuzz_${target} PRIVATE -fsanitize=fuzzer,address,undefined)
+        target_link_libraries(fuzz_${target} PRIVATE fuzzed_motion)
+        add_test(NAME fuzz_${target} COMMAND fuzz_${target} -runs=2000 -seed=1 -max_len=4000 -timeout=10
+            "-dict=${CMAKE_CURRENT_SOURCE_DIR}/tests/fuzz/motion.dict"
+            "${CMAKE_CURRENT_SOURCE_DIR}/tests/corpus/motion")
     endforeach()
 endif()
