@@ -171,10 +171,9 @@ class Attempt {
                 return found(player_.firings());
             }
             // Figures may do it while time passes, too, where no firing is.
-            const bool there =
-                hunt_.obligation->about_figures && wants(Target::kBroken) &&
-                (script != nullptr ? player_.firings() == script->violates_after
-                                   : track_ != nullptr && track_->distance() == 0);
+            const bool there = hunt_.obligation->about_figures && wants(Target::kBroken) &&
+                               (script != nullptr ? player_.firings() == script->violates_after
+                                                  : track_ != nullptr && track_->distance() == 0);
             if ((late_or_not == Says::kMaybe || there) && !maybe) {
                 maybe = true;
                 maybe_at = player_.now();

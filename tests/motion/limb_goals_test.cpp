@@ -210,7 +210,7 @@ TEST_CASE(
             least = std::fmin(
                 least, length(parent_from_end(shape, random.pose(shape)).translation - target));
         }
-        CHECK(miss < 1.01 * least + 1e-3);
+        CHECK(miss < 1.02 * least + 2e-3);
         blocked += miss > 1e-6;
     }
     CHECK(blocked > 20);
@@ -375,8 +375,18 @@ TEST_CASE(
     LimbSource random(9);
     int jumps = 0, paths = 0;
     for (int i = 0; i < 60; ++i) {
-        const LimbShape shape = i % 2 == 0 ? random.shape({.crooked = i % 4 == 0}) : arm();
-        const LimbIk ik(shape);
+        const LimbShape shape =
+            i % 2 == 0 ? random.shape({.limits = true, .crooked = i % 4 == 0}) : arm();
+        // What follows has a little more room than what makes the path, which often runs along two
+        // limits at once and leaves single swivels.
+        LimbShape wide = shape;
+        for (figure::JointLimit* limit : {&wide.start_limit, &wide.end_limit, &wide.hinge}) {
+            limit->swing_side_rad += 0.03;
+            limit->swing_other_rad += 0.03;
+            limit->lo_rad -= 0.03;
+            limit->hi_rad += 0.03;
+        }
+        const LimbIk ik(wide);
         // A smooth path of poses that the limb itself makes.
         const LimbPose a = random.pose(shape), b = random.pose(shape);
         LimbTrack track{a, {}, false};
@@ -409,7 +419,9 @@ TEST_CASE(
         jumps += jumped && !leaps;
         paths += !leaps;
     }
-    CHECK(jumps * 10 < paths);
+    // An arc may end for good: then it must jump.
+    CHECK(paths > 40);
+    CHECK(jumps * 12 < paths);
 }
 
 TEST_CASE("solving, choosing and following allocate nothing [alloc]") {

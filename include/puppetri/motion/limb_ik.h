@@ -132,8 +132,9 @@ class LimbIk {
 
     // All swivels within the limits of both ball joints, of all families, exactly: each end of an
     // arc is a root of a trigonometric polynomial of degree 1 (twist, round cones) or 2 (elliptic
-    // cones), derived in src/motion/swivel_limits.cpp. Arcs are ordered by family and angle.
-    // Cost    0.2 to 0.6 us a family; no allocation.
+    // cones), derived in src/motion/swivel_limits.cpp. Arcs are ordered by family. Single points
+    // that limits leave are told only where there is no arc. Cost    0.2 to 0.6 us a family; no
+    // allocation.
     void intervals(const LimbGoal& goal, SwivelIntervals& out) const;
 
     // Takes a swivel out of the intervals. Needs count > 0.
