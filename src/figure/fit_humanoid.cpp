@@ -280,7 +280,11 @@ class Fit {
                    "its bones are named wrongly, or its rest pose lies down: name them in `bones`");
             return;
         }
-        m_.hips_height_m = place("hips").y - floor;
+        // The pelvis is where the mannequin's is, between the hip joints and a little above,
+        // wherever the file has put its joint.
+        hips_ = (place(named(kLeft, "UpperLeg")) + place(named(kRight, "UpperLeg"))) * 0.5 +
+                Vec3{0, -mannequin_measures(1).legs[kLeft].hip.y * m_.height_m, 0};
+        m_.hips_height_m = hips_.y - floor;
         measure_trunk(top);
         double ankles = 0;
         for (const int side : {kLeft, kRight}) {
@@ -296,6 +300,7 @@ class Fit {
                    m_.legs[static_cast<std::size_t>(side)].shank_m;
         };
         m_.leg_m = std::fmin(leg(kLeft), leg(kRight));
+        measure_reach(floor);
         // Feet stand a little closer than the hips, as the mannequin's, but do not overlap.
         const double hip_side = (m_.legs[kLeft].hip.x - m_.legs[kRight].hip.x) / 2;
         double half_foot = 0;
@@ -308,7 +313,7 @@ class Fit {
 
     void measure_trunk(double top) {
         const HumanoidMeasures like = mannequin_measures(1);
-        Vec3 at = place("hips");
+        Vec3 at = hips_;
         const auto offset = [&](const char* bone, Vec3& out) {
             if (has(bone)) {
                 out = place(bone) - at;
@@ -358,6 +363,27 @@ class Fit {
         measure_fingers(side, usual);
     }
 
+    // Which mannequin has arms that long; the breast lies as far below the shoulders as its.
+    void measure_reach(double floor) {
+        const HumanoidMeasures like = mannequin_measures(1);
+        const auto arms = [](const HumanoidMeasures& m) {
+            double sum = 0;
+            for (const HumanoidMeasures::Arm& arm : m.arms) {
+                sum += (arm.upper_m + arm.fore_m) / 2;
+            }
+            return sum;
+        };
+        m_.reach_height_m = arms(m_) / arms(like);
+        const double shoulders =
+            (place(named(kLeft, "UpperArm")).y + place(named(kRight, "UpperArm")).y) / 2 - floor;
+        m_.breast_height_m =
+            shoulders - (shoulder_height(like) - like.breast_height_m) * m_.reach_height_m;
+    }
+    static double shoulder_height(const HumanoidMeasures& m) {
+        return m.hips_height_m + m.spine.y + m.chest.y + m.upper_chest.y +
+               m.arms[kLeft].clavicle.y + m.arms[kLeft].shoulder.y;
+    }
+
     void measure_fingers(int side, const HumanoidMeasures::Arm& usual) {
         static constexpr std::array<std::array<const char*, 3>, 5> kFingers{
             {{"ThumbMetacarpal", "ThumbProximal", "ThumbDistal"},
@@ -386,7 +412,7 @@ class Fit {
         const auto n = [side](const char* bone) { return named(side, bone); };
         HumanoidMeasures::Leg& leg = m_.legs[static_cast<std::size_t>(side)];
         const Vec3 ankle = place(n("Foot"));
-        leg.hip = place(n("UpperLeg")) - place("hips");
+        leg.hip = place(n("UpperLeg")) - hips_;
         leg.thigh_m = bone_length(n("UpperLeg"), n("LowerLeg"));
         leg.shank_m = bone_length(n("LowerLeg"), n("Foot"));
         const HumanoidMeasures like = mannequin_measures(1);
@@ -430,10 +456,14 @@ class Fit {
         for (const auto& [bone, raw_joint] : joint_) {
             const JointIndex at = figure.skeleton.find(lowest(bone));
             if (at.valid()) {
-                rig.bones.push_back({raw_joint, at, model_[raw_joint.value].rotation});
+                const Transform& model = model_[raw_joint.value];
+                rig.bones.push_back(
+                    {raw_joint,
+                     at,
+                     {model.rotation, bone == "hips" ? model.translation - hips_ : Vec3{}}});
             }
         }
-        rig.bones.push_back({{0}, figure.root, model_[0].rotation});
+        rig.bones.push_back({{0}, figure.root, {model_[0].rotation, {}}});
         std::sort(rig.bones.begin(), rig.bones.end(),
                   [](const RigBone& a, const RigBone& b) { return a.joint.value < b.joint.value; });
         return rig;
@@ -457,7 +487,7 @@ class Fit {
     std::vector<Quat> turned_;             // from rest to T-pose, in model space
     Pose pose_;                            // the T-pose
     HumanoidMeasures m_;
-    Vec3 chest_;  // from where the arms hang
+    Vec3 hips_, chest_;  // the pelvis; from where the arms hang
     Diagnostics defects_;
 };
 

@@ -34,6 +34,8 @@ class Builder {
         f_.ankle_height_m = m_.ankle_height_m;
         f_.leg_m = m_.leg_m;
         f_.stance_half_width_m = m_.stance_half_width_m;
+        f_.reach_height_m = m_.reach_height_m;
+        f_.breast_height_m = m_.breast_height_m;
         return std::move(f_);
     }
 

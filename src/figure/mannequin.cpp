@@ -19,7 +19,7 @@ constexpr double kSpine = 0.590, kChest = 0.650, kUpperChest = 0.715, kNeck = 0.
 constexpr double kClavicleSide = 0.012, kClavicleHeight = 0.802, kShoulderSide = 0.105,
                  kShoulderHeight = 0.810;
 constexpr double kUpperArm = 0.186, kForearm = 0.146, kHand = 0.108, kEyes = 0.936;
-constexpr double kStanceHalfWidth = 0.036;
+constexpr double kStanceHalfWidth = 0.036, kBreast = 0.635;
 
 // Fractions of the hand's length (Buchholz et al. 1992, table 1), thumb to little finger, from the
 // palm out.
@@ -87,6 +87,8 @@ HumanoidMeasures mannequin_measures(double height_m) {
     m.ankle_height_m = kAnkle * h;
     m.leg_m = (kThigh + kShank) * h;
     m.stance_half_width_m = kStanceHalfWidth * h;
+    m.reach_height_m = h;
+    m.breast_height_m = kBreast * h;
     for (const int side : {kLeft, kRight}) {
         const double s = side == kLeft ? 1 : -1;
         m.arms[static_cast<std::size_t>(side)] = arm_of(s, h);

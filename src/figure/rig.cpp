@@ -37,9 +37,10 @@ void Rig::to_raw(const Figure& figure, const Skeleton& skeleton, const Pose& pos
         if (next < bones.size() && bones[next].joint.value == j) {
             const RigBone& bone = bones[next++];
             const Transform& model_from_bone = s.bones[bone.bone.value];
-            world.rotation = normalized(model_from_bone.rotation * bone.bone_from_joint);
+            const Transform follows = model_from_bone * bone.bone_from_joint;
+            world.rotation = normalized(follows.rotation);
             if (JointIndex{j} == raw_hips || JointIndex{j} == raw_root) {
-                world.translation = model_from_bone.translation;
+                world.translation = follows.translation;
             }
             local = parent.valid() ? inverse(s.joints[parent.value]) * world : world;
             local.rotation = normalized(local.rotation);
@@ -67,9 +68,10 @@ void Rig::to_figure(const Figure& figure, const Skeleton& skeleton, const Pose& 
         for (const RigBone& bone : bones) {
             if (bone.bone.value == b) {
                 const Transform& joint = s.joints[bone.joint.value];
-                world.rotation = normalized(joint.rotation * conjugate(bone.bone_from_joint));
+                const Transform leads = joint * inverse(bone.bone_from_joint);
+                world.rotation = normalized(leads.rotation);
                 if (bone.joint == raw_hips || bone.joint == raw_root) {
-                    world.translation = joint.translation;
+                    world.translation = leads.translation;
                 }
                 local = parent.valid() ? inverse(s.bones[parent.value]) * world : world;
                 local.rotation = normalized(local.rotation);

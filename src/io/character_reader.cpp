@@ -484,15 +484,35 @@ class Reader {
         }
     }
 
+    // Knees that bend a little at rest are straight in the T-pose: the height is that of the
+    // figure as it stands there.
     bool fit(const std::vector<figure::FoundBone>& bones) {
         auto fitted = figure::fit_humanoid(c_.skeleton, c_.mesh, bones);
+        if (fitted && request_.height_m) {
+            rescale(*request_.height_m / fitted->figure.height_m);
+            fitted = figure::fit_humanoid(c_.skeleton, c_.mesh, bones);
+        }
         if (!fitted) {
             defects_ = std::move(fitted.error());
             return false;
         }
         c_.humanoid = std::move(*fitted);
         c_.dofs = figure::humanoid_dofs(c_.humanoid->figure);
+        c_.skeleton.height_m = c_.humanoid->figure.height_m;
         return true;
+    }
+    void rescale(double by) {
+        for (figure::Joint& joint : c_.skeleton.joints) {
+            joint.parent_from_joint_rest.translation =
+                joint.parent_from_joint_rest.translation * by;
+            joint.end_site_joint = joint.end_site_joint * by;
+        }
+        for (auto& p : c_.mesh.positions) {
+            for (float& part : p) {
+                part = static_cast<float>(part * by);
+            }
+        }
+        c_.metres_per_unit *= by;
     }
 
     // Creatures turn about the three axes of each joint; what `bones` names has that name.

@@ -107,7 +107,7 @@ class Carry final : public Movement {
 }  // namespace
 
 Transform carried_ball_chest(const figure::Figure& figure, double radius_m) {
-    const double h = figure.height_m;
+    const double h = figure.reach_height_m;
     const Vec3 shoulder = shoulder_chest(figure, Side::kLeft);
     const Vec3 place{0, shoulder.y - 0.165 * h, shoulder.z + 0.11 * h + radius_m};
     return {about_x(easy_pitch(figure, place, radius_m)), place};

@@ -224,11 +224,15 @@ class Catch final : public Movement {
 }  // namespace
 
 Vec3 catching_point(const figure::Figure& figure, const Controls& controls) {
+    if (!figure.humanoid()) {  // nothing catches; it is hit
+        return controls.pelvis.position_world + Vec3{0, figure.height_m / 2, 0};
+    }
     const Vec3 feet = (controls.legs[0].ankle_world + controls.legs[1].ankle_world) * 0.5;
     const double heading = heading_of(controls.pelvis.rotation_world);
-    const double h = figure.height_m;
+    const double h = figure.reach_height_m;
     const double floor = feet.y - figure.ankle_height_m;
-    return {feet.x + 0.24 * h * sin(heading), floor + 0.635 * h, feet.z + 0.24 * h * cos(heading)};
+    return {feet.x + 0.24 * h * sin(heading), floor + figure.breast_height_m,
+            feet.z + 0.24 * h * cos(heading)};
 }
 
 Ready make_ready(const MotionContext& context, const ReadySpec& spec) {

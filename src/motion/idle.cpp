@@ -62,6 +62,10 @@ PelvisControl pelvis_over_feet(const figure::Figure& figure, const Controls& fee
 Controls standing(const figure::Figure& figure, Vec3 position_world, double heading_rad) {
     Controls c;
     const Quat heading = about_y(heading_rad);
+    if (!figure.humanoid()) {
+        c.pelvis = {position_world, heading};
+        return c;
+    }
     for (const Side side : {Side::kLeft, Side::kRight}) {
         const double s = side == Side::kLeft ? 1 : -1;
         LegControl& leg = c.legs[index_of(side)];
@@ -141,9 +145,26 @@ class Idle final : public Movement {
     KeepReach reach_;
 };
 
+// A creature stays where it is: what it does alive is for movements that pose its joints.
+class Stays final : public Movement {
+ public:
+    Stays(const MotionContext& context, const IdleSpec& spec) : home_(context.now) {
+        limbs = spec.limbs;
+        duration =
+            context.duration.ticks >= 0 ? context.duration : whole_milliseconds(spec.duration_s);
+    }
+    void sample(double, Controls& out) const override { copy_limbs(limbs, home_, out); }
+
+ private:
+    Controls home_;
+};
+
 }  // namespace
 
 MovementPtr make_idle(const MotionContext& context, const IdleSpec& spec) {
+    if (!context.figure.humanoid()) {
+        return std::make_shared<Stays>(context, spec);
+    }
     return std::make_shared<Idle>(context, spec);
 }
 

@@ -192,6 +192,15 @@ class Solver {
 
 SolveOutcome solve_controls(const Figure& figure, const Controls& controls, Pose& out) {
     const std::size_t count = figure.skeleton.joints.size();
+    if (!figure.humanoid()) {
+        out.parent_from_joint.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            out.parent_from_joint[i] = figure.skeleton.joints[i].parent_from_joint_rest;
+        }
+        out.parent_from_joint[figure.root.value] = {controls.pelvis.rotation_world,
+                                                    controls.pelvis.position_world};
+        return {};
+    }
     if (out.parent_from_joint.size() != count) {
         out = figure::rest_pose(figure.skeleton);
     }

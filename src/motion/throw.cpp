@@ -121,7 +121,7 @@ class Throw final : public Movement {
     }
 
     void plan_arms(const MotionContext& context) {
-        const double h = figure_.height_m, r = release_s_;
+        const double h = figure_.reach_height_m, r = release_s_;
         for (const Side side : {Side::kLeft, Side::kRight}) {
             wrists_ball_ =
                 wrists_ball_ + ball_from_hand(figure_, side, radius_m_).translation * 0.5;

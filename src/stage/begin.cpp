@@ -206,7 +206,8 @@ void Stage::Data::attend(ActorIndex thrower, const motion::BoundCall& call) {
 // stands.
 void Stage::Data::receive(ActorIndex catcher, PropIndex prop, const motion::Flight& flight) {
     const bool waits = waiting[catcher.value].prop == prop;
-    if (held_by(catcher, now).valid() || (!waits && !planted(catcher))) {
+    if (!take.actors[catcher.value].figure->humanoid() || held_by(catcher, now).valid() ||
+        (!waits && !planted(catcher))) {
         return;
     }
     const ActorTimeline& timeline = take.actors[catcher.value].timeline;

@@ -44,8 +44,11 @@ Diagnostics check(const Cast& cast) {
     for (const Actor& a : cast.actors) {
         const std::string element = "actor " + a.name;
         c.name("actor", a.name);
-        c.need(a.height_m >= 0.5 && a.height_m <= 3, "height-out-of-range", element,
-               "the height is not between 0.5 m and 3 m", "give a height such as 1.75 m");
+        const bool whole = a.body != BodyKind::kCharacter || a.character != nullptr;
+        c.need(whole, "no-character", element, "it has no character", "give it one from a file");
+        c.need(!whole || !a.humanoid() || (a.height_m >= 0.5 && a.height_m <= 3),
+               "height-out-of-range", element, "the height is not between 0.5 m and 3 m",
+               "give a height such as 1.75 m");
         c.need(finite(a.position_world) && std::isfinite(a.heading_rad), "not-finite", element,
                "position or heading is no finite number", "give numbers");
         c.need(a.position_world.y == 0, "not-on-floor", element,
@@ -66,6 +69,10 @@ Diagnostics check(const Cast& cast) {
                "give numbers");
         c.need(!p.held_by.valid() || p.held_by.value < cast.actors.size(), "unknown-holder",
                element, "its holder is not in the cast", "name an actor of the cast");
+        c.need(!p.held_by.valid() || p.held_by.value >= cast.actors.size() ||
+                   cast.actors[p.held_by.value].humanoid(),
+               "no-hands", element, "its holder is a creature, which has no hands",
+               "let it lie on the floor, or give it to a humanoid");
         c.need(!p.held_by.valid() || (!box && p.size_m.x <= 0.4), "cannot-hold", element,
                "two hands hold only a sphere of at most 40 cm",
                "make it smaller, or let it lie on the floor");

@@ -96,7 +96,9 @@ struct Stage::Data {
     void place_actor(ActorIndex index) {
         const Actor& actor = play.cast.actors[index.value];
         ActorTake made;
-        made.figure = std::make_unique<figure::Figure>(figure::make_mannequin(actor.height_m));
+        made.figure = std::make_unique<figure::Figure>(
+            actor.body == BodyKind::kCharacter ? actor.character->moved_figure()
+                                               : figure::make_mannequin(actor.height_m));
         const figure::Figure& figure = *made.figure;
         MotionContext context{
             figure,      motion::standing(figure, actor.position_world, actor.heading_rad),

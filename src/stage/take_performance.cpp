@@ -26,6 +26,9 @@ Vec3 wanted_gaze(const Take& take, ActorIndex actor, SimTime at) {
         return {};
     }
     const ActorTake& a = take.actors[actor.value];
+    if (!a.figure->humanoid()) {
+        return {};
+    }
     motion::Controls controls;
     a.timeline.sample(at, controls);
     const Quat wanted = motion::gaze_at(*a.figure, controls, target);
@@ -53,6 +56,11 @@ class TakePerformance final : public Performance {
         for (std::size_t i = 0; i < take_.actors.size(); ++i) {
             take_.actors[i].gaze_track = std::move(tracks[i]);
             const Actor& actor = take_.cast.actors[i];
+            if (actor.body == BodyKind::kCharacter) {
+                actor_meshes_.emplace_back();  // it brings its own
+                show_character(actor);
+                continue;
+            }
             const figure::Skeleton& skeleton = take_.actors[i].figure->skeleton;
             const figure::Palette& palette = palette_named(actor.palette);
             if (actor.body == BodyKind::kStick) {
@@ -65,7 +73,8 @@ class TakePerformance final : public Performance {
                     actor_meshes_[*first_mannequin],
                     actor.height_m / take_.cast.actors[*first_mannequin].height_m, palette));
             }
-            actor_views_.push_back({actor.name, &skeleton, &actor_meshes_[i]});
+            actor_views_.push_back(
+                {actor.name, &skeleton, &actor_meshes_[i], take_.actors[i].figure->hips});
         }
         prop_meshes_.reserve(take_.props.size());
         for (std::size_t i = 0; i < take_.props.size(); ++i) {
@@ -86,7 +95,14 @@ class TakePerformance final : public Performance {
 
     void pose(ActorIndex actor, SimTime at, figure::Pose& out) const override {
         PUP_REQUIRE(actor.value < take_.actors.size());
-        take_.pose(actor, inside(at), out);
+        const Actor& who = take_.cast.actors[actor.value];
+        if (who.body != BodyKind::kCharacter || !who.character->humanoid) {
+            take_.pose(actor, inside(at), out);
+            return;
+        }
+        static thread_local figure::Pose moved;  // scratch: results never depend on what it holds
+        take_.pose(actor, inside(at), moved);
+        who.character->carry(moved, out);
     }
     Transform world_from_prop(PropIndex prop, SimTime at) const override {
         PUP_REQUIRE(prop.value < take_.props.size());
@@ -106,6 +122,13 @@ class TakePerformance final : public Performance {
     }
 
  private:
+    void show_character(const Actor& actor) {
+        const figure::Character& c = *actor.character;
+        actor_views_.push_back({actor.name, &c.skeleton, &c.mesh,
+                                c.humanoid ? c.humanoid->rig.raw_hips : figure::JointIndex{},
+                                true});
+    }
+
     SimTime inside(SimTime at) const { return std::clamp(at, SimTime{0}, take_.end); }
 
     Take take_;

@@ -30,19 +30,18 @@ struct Character {
     Skeleton skeleton;
     Mesh mesh;                       // bound to it; its model space is the root's at rest
     std::vector<JointLimit> limits;  // one per joint
-    DofSet dofs;                     // of the raw skeleton; a humanoid is posed by humanoid_dofs
+    DofSet dofs;  // by which movements pose it: of the Figure that moved_figure gives
     std::optional<Humanoid> humanoid;
     // A length of the file times this is metres: for clips from the same file, whose tracks carry
     // the names of the skeleton's joints.
     double metres_per_unit = 1;
     std::string source;  // the file, or empty; for diagnostics
 
-    // The pose of the skeleton from one of the humanoid, or a copy of it without one.
+    // The figure on which movements act: the humanoid's, or for a creature one that has only the
+    // raw skeleton.
+    Figure moved_figure() const;
+    // The pose of the raw skeleton from one of moved_figure. `raw` is resized once.
     void carry(const Pose& pose, Pose& raw) const;
-    // The skeleton on which movements act: the humanoid's, or the own.
-    const Skeleton& moved_skeleton() const {
-        return humanoid ? humanoid->figure.skeleton : skeleton;
-    }
 };
 
 }  // namespace puppetri::figure

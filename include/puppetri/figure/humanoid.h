@@ -36,6 +36,8 @@ struct HumanoidMeasures {
     double ankle_height_m = 0;
     double leg_m = 0;  // thigh and shank, of the shorter leg
     double stance_half_width_m = 0;
+    double reach_height_m = 0;  // see figure::Figure
+    double breast_height_m = 0;
     std::array<Arm, 2> arms;  // left, right
     std::array<Leg, 2> legs;
 };

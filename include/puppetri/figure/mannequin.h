@@ -51,7 +51,12 @@ struct HandPoses {
     std::array<Quat, kFingerJointCount> relaxed, spread, grip;
 };
 
+// What movements act on. A creature (figure/character.h) has a skeleton, limits and `root`, a
+// height and nothing else of this: it has no controls (motion/controls.h), but its pelvis control
+// places the root.
 struct Figure {
+    bool humanoid() const { return hips.valid(); }
+
     Skeleton skeleton;
     JointIndex root, hips, spine, chest, upper_chest, neck, head;
     std::array<Leg, 2> legs;
@@ -64,6 +69,10 @@ struct Figure {
     double leg_m = 0;                // thigh + shank
     double stance_half_width_m = 0;  // of the ankles from the midline when standing and walking
     double height_m = 0;
+    // How tall a mannequin with arms of this length is; what hands do in parts of the height is in
+    // parts of this. Of the mannequin its height.
+    double reach_height_m = 0;
+    double breast_height_m = 0;  // of where a ball is caught, in the rest pose
 };
 
 // Needs 0.5 <= height_m <= 3 (aborts otherwise: the language checks it before).

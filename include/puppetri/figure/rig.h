@@ -14,12 +14,12 @@
 namespace puppetri::figure {
 
 // One joint of the raw skeleton that follows a bone of the humanoid:
-//   model_from_joint.rotation = model_from_bone.rotation * bone_from_joint.
-// bone_from_joint is the joint's rotation in the model when both stand in the T-pose.
+//   model_from_joint = model_from_bone * bone_from_joint,
+// of which the translation counts for root and hips alone: bones do not lengthen.
 struct RigBone {
-    JointIndex joint;  // raw
-    JointIndex bone;   // of Figure::skeleton; of several at one place the lowest
-    Quat bone_from_joint;
+    JointIndex joint;           // raw
+    JointIndex bone;            // of Figure::skeleton; of several at one place the lowest
+    Transform bone_from_joint;  // in the T-pose
 };
 
 struct Rig {

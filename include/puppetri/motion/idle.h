@@ -23,8 +23,8 @@ struct IdleSpec {
     double liveliness = 1;  // scales breath, weight shift and gaze; 0 is a statue
 };
 
-// Stands where the feet are. Legs in the air are put down first. A prescribed duration in the
-// context replaces the spec's. Deterministic in the context's seed.
+// Stands where the feet are (a creature: stays where it is). Legs in the air are put down first. A
+// prescribed duration in the context replaces the spec's. Deterministic in the context's seed.
 MovementPtr make_idle(const MotionContext& context, const IdleSpec& spec);
 
 }  // namespace puppetri::motion

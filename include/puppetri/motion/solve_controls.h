@@ -17,7 +17,8 @@ struct SolveOutcome {
 };
 
 // Gives   a pose whose feet and hands are where the controls say, as far as bones and limits allow;
-//         the feet keep their rotation in the world.
+//         the feet keep their rotation in the world. Of a creature the rest pose, with its root
+//         where the pelvis control is.
 // Cost    a few microseconds; `out` is resized once, then nothing is allocated.
 SolveOutcome solve_controls(const figure::Figure& figure, const Controls& controls,
                             figure::Pose& out);

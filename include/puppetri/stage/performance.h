@@ -46,7 +46,8 @@ struct ActorView {
     std::string name;
     const figure::Skeleton* skeleton = nullptr;  // lives as long as the performance
     const figure::Mesh* mesh = nullptr;
-    figure::JointIndex hips = {};  // none where nothing is called so; joint 0 is the root
+    figure::JointIndex hips = {};  // none where there are none; joint 0 is the root
+    bool own_rest = false;         // a character's: its rest pose is its file's and no T-pose
 };
 struct PropView {
     std::string name;
