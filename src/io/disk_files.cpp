@@ -35,6 +35,11 @@ struct Descriptor {
 
 }  // namespace
 
+std::string DiskFiles::resolve(const std::string& importer, const std::string& written) {
+    const auto replaced = replaced_.find(written);
+    return replaced != replaced_.end() ? replaced->second : scene::path_beside(importer, written);
+}
+
 Result<std::string, scene::FileProblem> DiskFiles::read(const std::string& path) {
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
     struct stat found {};

@@ -144,6 +144,13 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
         unknown(name.span, std::string("movement of ") + name_of(kind), name.text, known);
         return std::nullopt;
     }
+    if (kind != SubjectKind::kProp && !scene.play.cast.actors[out.subject.actor.value].humanoid()) {
+        error("wrong-subject", who.span,
+              scene.play.cast.actors[out.subject.actor.value].name + " is a creature, and " +
+                  name.text + " is a movement of humanoids",
+              "give it a movement of its own that poses its joints, or make it a `character`");
+        return std::nullopt;
+    }
     if (kind == SubjectKind::kLimb && !signature->on_limbs.has(out.subject.limb)) {
         error("wrong-subject", who.span,
               "a " + std::string(motion::name_of(out.subject.limb)) + " cannot " + name.text,

@@ -58,6 +58,14 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
         cast.actors[index.value] = std::move(actor);
         return ActorTerm{index};
     }
+    if (kind == "character" || kind == "creature") {
+        const motion::ActorIndex index{static_cast<std::uint32_t>(cast.actors.size())};
+        stage::Actor actor{.name = name, .body = stage::BodyKind::kCharacter};
+        cast.actors.push_back(actor);
+        fill_character(member, scope, actor);
+        cast.actors[index.value] = std::move(actor);
+        return ActorTerm{index};
+    }
     if (kind == "sphere" || kind == "box") {
         const motion::PropIndex index{static_cast<std::uint32_t>(cast.props.size())};
         stage::Prop prop{
@@ -76,7 +84,8 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
         cast.sets[index.value] = std::move(set);
         return SetTerm{index};
     }
-    unknown(member.kind.span, "kind of cast", kind, {"mannequin", "stick", "sphere", "box", "set"});
+    unknown(member.kind.span, "kind of cast", kind,
+            {"mannequin", "stick", "character", "creature", "sphere", "box", "set"});
     return Nothing{};
 }
 
@@ -131,20 +140,31 @@ std::optional<std::string> Elaboration::palette_of(const lang::Property& propert
     return std::nullopt;
 }
 
+bool Elaboration::place_figure(const lang::Property& p, const Scope& scope, stage::Actor& actor) {
+    const std::string name = name_of(p);
+    if (name == "facing") {
+        actor.heading_rad = quantity_of(p, scope, lang::dimension::kAngle, "facing 90 deg")
+                                .value_or(actor.heading_rad);
+    } else if (name == "at") {
+        if (has_values(p, 1, "at (0, 0, 0) m")) {
+            actor.position_world = point_of(p.values[0], scope).value_or(actor.position_world);
+        }
+    } else {
+        return false;
+    }
+    return true;
+}
+
 void Elaboration::fill_figure(const lang::CastMember& member, const Scope& scope,
                               stage::Actor& actor) {
     for (const lang::Property& p : member.properties) {
         const std::string name = name_of(p);
+        if (place_figure(p, scope, actor)) {
+            continue;
+        }
         if (name == "height") {
             actor.height_m = quantity_of(p, scope, lang::dimension::kLength, "height 1.75 m")
                                  .value_or(actor.height_m);
-        } else if (name == "facing") {
-            actor.heading_rad = quantity_of(p, scope, lang::dimension::kAngle, "facing 90 deg")
-                                    .value_or(actor.heading_rad);
-        } else if (name == "at") {
-            if (has_values(p, 1, "at (0, 0, 0) m")) {
-                actor.position_world = point_of(p.values[0], scope).value_or(actor.position_world);
-            }
         } else if (name == "palette") {
             actor.palette = palette_of(p).value_or(actor.palette);
         } else {

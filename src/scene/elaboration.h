@@ -22,6 +22,7 @@
 #include "puppetri/motion/library.h"
 #include "puppetri/motion/own_movement.h"
 #include "puppetri/net/draft.h"
+#include "puppetri/scene/assets.h"
 #include "puppetri/scene/scene.h"
 #include "term.h"
 
@@ -244,6 +245,9 @@ class Elaboration {
     Term add_cast_member(const lang::CastMember& member);
     void fill_figure(const lang::CastMember& member, const Scope& scope, stage::Actor& actor);
     void fill_prop(const lang::CastMember& member, const Scope& scope, stage::Prop& prop);
+    // Where it stands and how it looks, of every kind of actor; gives whether it was such a
+    // property.
+    bool place_figure(const lang::Property& property, const Scope& scope, stage::Actor& actor);
     void fill_set(const lang::CastMember& member, const Scope& scope, stage::Set& set);
     Term holder_actor(const lang::Expr& e, const Scope& scope);
     void add_camera(const lang::Block& block);
@@ -254,6 +258,11 @@ class Elaboration {
     std::optional<std::string> palette_of(const lang::Property& property);
     bool has_values(const lang::Property& property, std::size_t count, const char* form);
     void unknown_property(const lang::Property& property, const std::vector<std::string>& known);
+    // cast_characters.cpp -- actors out of files
+    void fill_character(const lang::CastMember& member, const Scope& scope, stage::Actor& actor);
+    std::vector<NamedBone> bones_of(const lang::Property& property);
+    void load_character(const lang::CastMember& member, CharacterRequest& request,
+                        stage::Actor& actor);
     void complete_cast();
     void check_cast();
     void complete_blocks();

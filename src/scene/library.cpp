@@ -15,6 +15,7 @@ class Loader {
     explicit Loader(FileSource& source) : source_(source) {}
 
     Library load(const std::string& path) {
+        library_.source = &source_;
         if (const auto text = source_.read(path); text) {
             open(path, *text);
         } else {

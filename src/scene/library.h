@@ -26,6 +26,7 @@ struct Declaration {
 };
 
 struct Library {
+    FileSource* source = nullptr;  // what it was read from: gives characters and clips as well
     std::deque<lang::File> files;  // by number, as in lang::Span::file; addresses stay
     std::vector<std::map<std::string, Declaration>> visible;  // by file
     std::vector<std::map<std::string, std::string>>

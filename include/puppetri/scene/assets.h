@@ -33,14 +33,20 @@ struct CharacterRequest {
     bool humanoid = true;            // false: nothing is looked for; a creature
 };
 
+struct LoadedCharacter {
+    std::shared_ptr<const figure::Character> character;  // not null
+    Diagnostics notes;                                   // warnings: what the file has and is not
+                                                         // shown
+};
+
 class Assets {
  public:
     virtual ~Assets() = default;
 
     // Reads a character: a glTF, GLB or VRM file. Fails with every defect of it; where.file is the
-    // path, the element is of the file ("node 7 (Bip01 L Thigh)").
-    virtual Checked<std::shared_ptr<const figure::Character>> character(
-        const CharacterRequest& request) = 0;
+    // path, the element is of the file ("node 7 (Bip01 L Thigh)") or the bone that is missing
+    // ("left_knee").
+    virtual Checked<LoadedCharacter> character(const CharacterRequest& request) = 0;
 
     // All clips of a file (glTF, GLB, VRMA, BVH, keyframes), by the names that it gives them.
     virtual Checked<std::shared_ptr<const std::vector<motion::Clip>>> clips(
