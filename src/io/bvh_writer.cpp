@@ -67,10 +67,14 @@ class Writer {
           scale_(options.unit == LengthUnit::kMetre ? 1 : 100),
           rest_(model_from_rest(actor_.skeleton)) {
         const auto& joints = actor_.skeleton.joints;
-        const figure::JointIndex hips = actor_.skeleton.find("hips");
+        const figure::JointIndex hips = actor_.hips;
         // In the mode kHips the root does nothing: it is left out, and hips is the first.
-        const bool hips_first =
-            hips.valid() && joints[hips.value].parent == figure::JointIndex{0} && root_is_still();
+        const auto of_root = std::count_if(
+            joints.begin(), joints.end(),
+            [](const figure::Joint& joint) { return joint.parent == figure::JointIndex{0}; });
+        const bool hips_first = hips.valid() && of_root == 1 &&
+                                joints[hips.value].parent == figure::JointIndex{0} &&
+                                root_is_still();
         std::vector<std::size_t> part_of(joints.size(), 0);
         for (std::size_t j = hips_first ? 1 : 0; j < joints.size(); ++j) {
             part_of[j] = parts_.size();

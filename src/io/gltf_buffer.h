@@ -42,6 +42,9 @@ class GltfBuffer {
         return static_cast<int>(accessors_.size()) - 1;
     }
 
+    // Bytes without an accessor (an image); gives the view's index.
+    int add_bytes(std::string_view bytes) { return add_view(bytes, Target::kNone); }
+
     void write_accessors(JsonWriter& json) const;
     void write_views(JsonWriter& json) const;
     const std::string& bytes() const { return bytes_; }

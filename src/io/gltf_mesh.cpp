@@ -96,19 +96,45 @@ int add_indices(GltfBuffer& buffer, std::span<const std::array<std::uint32_t, 3>
                       "SCALAR", 1);
 }
 
-bool same_material(const figure::Material& a, const figure::Material& b) {
-    return a.name == b.name && a.base_colour == b.base_colour && a.roughness == b.roughness &&
-           a.metallic == b.metallic;
+int wrap_word(figure::TextureWrap wrap) {
+    return wrap == figure::TextureWrap::kClamp    ? 33071
+           : wrap == figure::TextureWrap::kMirror ? 33648
+                                                  : 10497;
 }
 
-int material_index(GltfMeshes& all, const figure::Material& material) {
-    for (std::size_t i = 0; i < all.materials.size(); ++i) {
-        if (same_material(all.materials[i], material)) {
-            return static_cast<int>(i);
-        }
+template <class T>
+int index_in(std::vector<T>& list, const T& value) {
+    const auto at = std::find(list.begin(), list.end(), value);
+    if (at == list.end()) {
+        list.push_back(value);
+        return static_cast<int>(list.size()) - 1;
     }
-    all.materials.push_back(material);
-    return static_cast<int>(all.materials.size()) - 1;
+    return static_cast<int>(at - list.begin());
+}
+
+std::uint32_t texture_index(GltfMeshes& all, GltfBuffer& buffer, const figure::Mesh& mesh,
+                            std::uint32_t texture) {
+    if (texture == figure::kNoTexture) {
+        return texture;
+    }
+    const figure::Texture& t = mesh.textures[texture];
+    const auto image = all.image_of.emplace(t.bytes, static_cast<int>(all.images.size()));
+    if (image.second) {
+        all.images.push_back({t.name, t.mime_type, buffer.add_bytes(t.bytes)});
+    }
+    const int sampler =
+        index_in(all.samplers, {wrap_word(t.wrap_u), wrap_word(t.wrap_v), t.smooth});
+    return static_cast<std::uint32_t>(index_in(all.textures, {image.first->second, sampler}));
+}
+
+int material_index(GltfMeshes& all, GltfBuffer& buffer, const figure::Mesh& mesh,
+                   figure::Material material) {
+    for (std::uint32_t* texture :
+         {&material.base_colour_texture, &material.metallic_roughness_texture,
+          &material.normal_texture, &material.occlusion_texture, &material.emissive_texture}) {
+        *texture = texture_index(all, buffer, mesh, *texture);
+    }
+    return index_in(all.materials, material);
 }
 
 }  // namespace
@@ -142,6 +168,16 @@ int add_mesh(GltfMeshes& all, GltfBuffer& buffer, const std::string& name,
         shared.weights = buffer.add(std::span<const float>(weights), Target::kVertices,
                                     Component::kFloat, "VEC4", 4);
     }
+    if (!mesh.uvs.empty()) {
+        PUP_REQUIRE(mesh.uvs.size() == vertices);
+        std::vector<float> uvs;
+        uvs.reserve(vertices * 2);
+        for (const auto& uv : mesh.uvs) {
+            uvs.insert(uvs.end(), uv.begin(), uv.end());
+        }
+        shared.uvs = buffer.add(std::span<const float>(uvs), Target::kVertices, Component::kFloat,
+                                "VEC2", 2);
+    }
     GltfMesh result{name, {}};
     std::vector<figure::MeshPart> parts = mesh.parts;
     if (parts.empty()) {
@@ -156,7 +192,7 @@ int add_mesh(GltfMeshes& all, GltfBuffer& buffer, const std::string& name,
             buffer, std::span(mesh.triangles).subspan(part.first_triangle, part.triangle_count),
             vertices);
         if (part.material < mesh.materials.size()) {
-            primitive.material = material_index(all, mesh.materials[part.material]);
+            primitive.material = material_index(all, buffer, mesh, mesh.materials[part.material]);
         }
         result.primitives.push_back(primitive);
     }
@@ -192,6 +228,9 @@ void write_meshes(JsonWriter& json, const GltfMeshes& all) {
             if (primitive.joints >= 0) {
                 json.member("JOINTS_0", primitive.joints).member("WEIGHTS_0", primitive.weights);
             }
+            if (primitive.uvs >= 0) {
+                json.member("TEXCOORD_0", primitive.uvs);
+            }
             json.end_object().member("indices", primitive.indices);
             if (primitive.material >= 0) {
                 json.member("material", primitive.material);
@@ -201,6 +240,22 @@ void write_meshes(JsonWriter& json, const GltfMeshes& all) {
         json.end_array().end_object();
     }
 }
+
+namespace {
+
+void write_texture(JsonWriter& json, const char* name, std::uint32_t texture,
+                   const char* factor = nullptr, float value = 1) {
+    if (texture == figure::kNoTexture) {
+        return;
+    }
+    json.key(name).begin_object().member("index", static_cast<int>(texture));
+    if (factor != nullptr && value != 1) {
+        json.key(factor).number(value);
+    }
+    json.end_object();
+}
+
+}  // namespace
 
 void write_materials(JsonWriter& json, const GltfMeshes& all) {
     for (const figure::Material& material : all.materials) {
@@ -212,10 +267,64 @@ void write_materials(JsonWriter& json, const GltfMeshes& all) {
         for (const float part : material.base_colour) {
             json.number(std::clamp(part, 0.0f, 1.0f));
         }
-        json.integer(1).end_array();
+        if (material.alpha == 1) {
+            json.integer(1).end_array();
+        } else {
+            json.number(std::clamp(material.alpha, 0.0f, 1.0f)).end_array();
+        }
         json.key("metallicFactor").number(std::clamp(material.metallic, 0.0f, 1.0f));
         json.key("roughnessFactor").number(std::clamp(material.roughness, 0.0f, 1.0f));
-        json.end_object().end_object();
+        write_texture(json, "baseColorTexture", material.base_colour_texture);
+        write_texture(json, "metallicRoughnessTexture", material.metallic_roughness_texture);
+        json.end_object();
+        write_texture(json, "normalTexture", material.normal_texture, "scale",
+                      material.normal_scale);
+        write_texture(json, "occlusionTexture", material.occlusion_texture, "strength",
+                      material.occlusion_strength);
+        write_texture(json, "emissiveTexture", material.emissive_texture);
+        if (material.emissive != std::array<float, 3>{}) {
+            json.key("emissiveFactor").begin_array();
+            for (const float part : material.emissive) {
+                json.number(std::clamp(part, 0.0f, 1.0f));
+            }
+            json.end_array();
+        }
+        if (material.alpha_mode != figure::AlphaMode::kOpaque) {
+            const bool mask = material.alpha_mode == figure::AlphaMode::kMask;
+            json.member("alphaMode", mask ? "MASK" : "BLEND");
+            if (mask) {
+                json.key("alphaCutoff").number(std::clamp(material.alpha_cutoff, 0.0f, 1.0f));
+            }
+        }
+        if (material.double_sided) {
+            json.key("doubleSided").boolean(true);
+        }
+        json.end_object();
+    }
+}
+
+void write_textures(JsonWriter& json, const GltfMeshes& all) {
+    for (const GltfTextureOut& texture : all.textures) {
+        json.begin_object().member("sampler", texture.sampler).member("source", texture.image);
+        json.end_object();
+    }
+}
+
+void write_samplers(JsonWriter& json, const GltfMeshes& all) {
+    for (const GltfSamplerOut& s : all.samplers) {
+        json.begin_object().member("magFilter", s.smooth ? 9729 : 9728);
+        json.member("minFilter", s.smooth ? 9987 : 9984);
+        json.member("wrapS", s.wrap_s).member("wrapT", s.wrap_t).end_object();
+    }
+}
+
+void write_images(JsonWriter& json, const GltfMeshes& all) {
+    for (const GltfImageOut& image : all.images) {
+        json.begin_object();
+        if (!image.name.empty()) {
+            json.member("name", image.name);
+        }
+        json.member("bufferView", image.view).member("mimeType", image.mime_type).end_object();
     }
 }
 

@@ -288,6 +288,9 @@ std::string Assembly::json(std::string_view buffer_uri) const {
     list("cameras", !content_.cameras.empty(), [&] { write_cameras(json); });
     list("meshes", !meshes_.meshes.empty(), [&] { write_meshes(json, meshes_); });
     list("materials", !meshes_.materials.empty(), [&] { write_materials(json, meshes_); });
+    list("textures", !meshes_.textures.empty(), [&] { write_textures(json, meshes_); });
+    list("samplers", !meshes_.samplers.empty(), [&] { write_samplers(json, meshes_); });
+    list("images", !meshes_.images.empty(), [&] { write_images(json, meshes_); });
     list("skins", !skins_.empty(), [&] { write_skins(json); });
     list("animations", !animations_.empty(), [&] {
         for (std::size_t i = 0; i < animations_.size(); ++i) {

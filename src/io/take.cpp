@@ -84,15 +84,19 @@ std::vector<Key> keys_of(const stage::Performance& performance, SimTime start,
     return distinct;
 }
 
-// Without the travel in the floor's plane, or without a root joint's doing at all.
-void apply_root_mode(RootMode mode, figure::JointIndex hips, const Transform& first_root,
-                     std::span<Transform> parent_from_joint) {
+// Without the travel in the floor's plane, or without a root joint's doing at all: then what hangs
+// from it carries it.
+void apply_root_mode(RootMode mode, const figure::Skeleton& skeleton, bool has_hips,
+                     const Transform& first_root, std::span<Transform> parent_from_joint) {
     Transform& root = parent_from_joint[0];
     if (mode == RootMode::kInPlace) {
         root.translation = first_root.translation;
-    } else if (mode == RootMode::kHips && hips.valid()) {
-        Transform& parent_from_hips = parent_from_joint[hips.value];
-        parent_from_hips = root * parent_from_hips;
+    } else if (mode == RootMode::kHips && has_hips) {
+        for (std::size_t j = 1; j < parent_from_joint.size(); ++j) {
+            if (skeleton.joints[j].parent.value == 0) {
+                parent_from_joint[j] = root * parent_from_joint[j];
+            }
+        }
         root = {};
     }
 }
@@ -103,11 +107,7 @@ class ActorSampler {
     // from_origin: the root begins at the origin.
     ActorSampler(const stage::Performance& performance, std::uint32_t actor, SimTime start,
                  bool from_origin, const TakeOptions& options)
-        : performance_(performance),
-          actor_(actor),
-          start_(start),
-          mode_(options.root),
-          hips_(performance.actors()[actor].skeleton->find("hips")) {
+        : performance_(performance), actor_(actor), start_(start), mode_(options.root) {
         performance.pose({actor}, start, pose_);
         PUP_REQUIRE(!pose_.parent_from_joint.empty());
         PUP_REQUIRE(pose_.parent_from_joint.size() ==
@@ -121,10 +121,11 @@ class ActorSampler {
         const stage::ActorView& view = performance_.actors()[actor_];
         TakeActor actor;
         actor.name = view.name;
-        actor.skeleton = rest == RestPose::kA ? with_a_pose(*view.skeleton) : *view.skeleton;
+        const bool a_pose = rest == RestPose::kA && !view.own_rest;
+        actor.skeleton = a_pose ? with_a_pose(*view.skeleton) : *view.skeleton;
+        actor.hips = view.hips;
         if (view.mesh != nullptr) {
-            actor.mesh = rest == RestPose::kA ? rebound(*view.mesh, *view.skeleton, actor.skeleton)
-                                              : *view.mesh;
+            actor.mesh = a_pose ? rebound(*view.mesh, *view.skeleton, actor.skeleton) : *view.mesh;
         }
         performance_.pose({actor_}, start_ + end, pose_);
         actor.root_delta = inverse(world_first_root_) * pose_.parent_from_joint[0];
@@ -135,8 +136,9 @@ class ActorSampler {
     std::span<const Transform> sample(SimTime at) {
         performance_.pose({actor_}, start_ + at, pose_);
         pose_.parent_from_joint[0] = file_from_world_ * pose_.parent_from_joint[0];
-        apply_root_mode(mode_, hips_, file_from_world_ * world_first_root_,
-                        pose_.parent_from_joint);
+        const stage::ActorView& view = performance_.actors()[actor_];
+        apply_root_mode(mode_, *view.skeleton, view.hips.valid(),
+                        file_from_world_ * world_first_root_, pose_.parent_from_joint);
         return pose_.parent_from_joint;
     }
 
@@ -145,7 +147,6 @@ class ActorSampler {
     std::uint32_t actor_ = 0;
     SimTime start_;
     RootMode mode_ = RootMode::kMotion;
-    figure::JointIndex hips_;
     Transform world_first_root_, file_from_world_;
     figure::Pose pose_;
 };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "environment.h"
 #include "float3.h"
@@ -14,6 +15,7 @@
 #include "puppetri/base/require.h"
 #include "shade_maps.h"
 #include "skin.h"
+#include "texture.h"
 #include "tone.h"
 #include "tracer.h"
 
@@ -32,6 +34,7 @@ struct Object {
     std::vector<float> light;                // ambient, per vertex
     std::vector<std::uint16_t> material_of;  // per triangle
     std::uint16_t first_id = 0;              // ids of its materials follow each other
+    std::vector<std::optional<TextureImage>> textures;
     std::vector<Sphere> spheres;
     FloorShade floor;
 };
@@ -98,6 +101,9 @@ struct PictureMaker::Data {
         o.normals_world.resize(mesh->positions.size());
         o.light.resize(mesh->positions.size(), 1.0f);
         o.material_of.resize(mesh->triangles.size());
+        for (const figure::Texture& texture : mesh->textures) {
+            o.textures.push_back(TextureImage::decode(texture));
+        }
         for (const figure::MeshPart& part : mesh->parts) {
             for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
                 o.material_of[part.first_triangle + t] = static_cast<std::uint16_t>(part.material);
@@ -320,6 +326,29 @@ void PictureMaker::Data::background(const std::array<Float3, kPack>& d, unsigned
     }
 }
 
+namespace {
+
+// The base colour texture at a point of a triangle that a pixel of this width sees; white without.
+Float3 texture_colour(const Object& o, const figure::Material& material,
+                      const std::array<std::uint32_t, 3>& t, const std::array<float, 3>& weights,
+                      const std::array<Float3, 3>& corner_world, float width_world) {
+    if (material.base_colour_texture >= o.textures.size() || o.mesh->uvs.empty() ||
+        !o.textures[material.base_colour_texture]) {
+        return {1, 1, 1};
+    }
+    const auto &a = o.mesh->uvs[t[0]], &b = o.mesh->uvs[t[1]], &c = o.mesh->uvs[t[2]];
+    const float u = a[0] * weights[0] + b[0] * weights[1] + c[0] * weights[2],
+                v = a[1] * weights[0] + b[1] * weights[1] + c[1] * weights[2];
+    const float in_picture =
+        std::fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+    const Float3 span = cross(corner_world[1] - corner_world[0], corner_world[2] - corner_world[0]);
+    const float in_world = std::sqrt(dot(span, span));
+    const float width = in_world > 0 ? width_world * std::sqrt(in_picture / in_world) : 0.0f;
+    return o.textures[material.base_colour_texture]->at(u, v, width);
+}
+
+}  // namespace
+
 void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::array<float, kPack>& y,
                                unsigned lanes, bool primary, bool shadows,
                                std::array<Sample, kPack>& out,
@@ -346,6 +375,7 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
         Float3 normal;
         float ambient = 1;
         const figure::Material* material = nullptr;
+        Float3 albedo;
     };
     std::array<Surface, kPack> surfaces;
     unsigned to_sun = 0;
@@ -382,7 +412,11 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
             if (dot(n, d[i]) > 0) {  // seen at a grazing angle, just beyond the outline
                 n = normalized(n - d[i] * (dot(n, d[i]) * 1.02f));
             }
-            surfaces[i] = {n, ambient, &o.mesh->materials[o.material_of[hits.triangle[i]]]};
+            const figure::Material& material = o.mesh->materials[o.material_of[hits.triangle[i]]];
+            surfaces[i] = {
+                n, ambient, &material,
+                float3(material.base_colour) *
+                    texture_colour(o, material, t, w, corner, hits.distance[i] * eye.step)};
             out[i].id = static_cast<std::uint16_t>(o.first_id + o.material_of[hits.triangle[i]]);
             out[i].depth = hits.distance[i];
             if (dot(n, sun) > 0) {
@@ -430,7 +464,7 @@ void PictureMaker::Data::shade(const std::array<float, kPack>& x, const std::arr
         }
         const Surface& s = surfaces[i];
         const Float3 n = s.normal;
-        const Float3 albedo = float3(s.material->base_colour);
+        const Float3 albedo = s.albedo;
         const float facing = shadow ? 0 : std::max(0.0f, dot(n, sun));
         const Float3 ambient = environment.ambient(n) * (0.25f + 0.75f * s.ambient) * s.ambient;
         Float3 shine = albedo * (environment.sun() * facing + ambient);

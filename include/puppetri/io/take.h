@@ -33,6 +33,7 @@ enum class RootMode : std::uint8_t {
 enum class RestPose : std::uint8_t {
     kT,
     kA,  // upper arms 45 degrees down; poses are the same, only what they are measured from differs
+         // (characters from files keep the rest pose of their file)
 };
 
 // Frames of the performance, both ends inside.
@@ -60,6 +61,7 @@ struct TakeOptions {
 struct TakeActor {
     std::string name;
     figure::Skeleton skeleton;  // in the chosen rest pose
+    figure::JointIndex hips;    // none where there are none; joint 0 is the root
     figure::Mesh mesh;          // bound to it
     // Key-major: transforms[key * joints + joint].
     std::vector<Transform> parent_from_joint;
