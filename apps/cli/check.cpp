@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/scene/scene.h"
+#include "scene_files.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -17,6 +18,9 @@ std::string counted(std::size_t n, const std::string& what) {
 
 int run(const Arguments& arguments) {
     io::DiskFiles files;
+    if (!use_files(arguments, files)) {
+        return kBadInput;
+    }
     const std::string path = arguments.text("file");
     const Diagnostics list = scene::check(files, path);
     std::size_t errors = 0, warnings = 0;
@@ -56,7 +60,8 @@ Command check_command() {
         "  puppetri check ball.pup\n"
         "  puppetri check ball.pup --json      for editors: one object on stdout",
         {{"file", Value::kText, "FILE", "a .pup file", true},
-         {"--json", Value::kFlag, "", "the defects as JSON on stdout", false}},
+         {"--json", Value::kFlag, "", "the defects as JSON on stdout", false},
+         file_option()},
         run};
 }
 

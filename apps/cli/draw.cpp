@@ -7,6 +7,7 @@
 #include "puppetri/io/disk_files.h"
 #include "puppetri/scene/mathematics.h"
 #include "puppetri/scene/scene.h"
+#include "scene_files.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -18,6 +19,9 @@ int run(const Arguments& arguments) {
         return kBadInput;
     }
     io::DiskFiles files;
+    if (!use_files(arguments, files)) {
+        return kBadInput;
+    }
     const auto scene = scene::load(files, arguments.text("scene"));
     if (!scene) {
         say_diagnostics(scene.error());
@@ -38,7 +42,8 @@ Command draw_command() {
             "Example:\n"
             "  puppetri draw three_arcs.pup --as math",
             {{"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
-             {"--as", Value::kText, "KIND", "math (the only kind)", false}},
+             {"--as", Value::kText, "KIND", "math (the only kind)", false},
+             file_option()},
             run};
 }
 

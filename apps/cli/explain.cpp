@@ -102,7 +102,7 @@ std::string json_of(const Verdict& v, const verdict::Explanation& e,
 
 int explain(const Arguments& arguments) {
     const std::string path = arguments.text("scene"), rule = arguments.text("rule");
-    auto subject = load_subject(path);
+    auto subject = load_subject(path, arguments);
     if (!subject) {
         return subject.error();
     }

@@ -11,6 +11,7 @@
 #include "puppetri/io/disk_files.h"
 #include "puppetri/io/witness_file.h"
 #include "puppetri/scene/events.h"
+#include "scene_files.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -23,6 +24,7 @@ std::vector<Option> with_performing_options(std::vector<Option> options) {
         {"--events", Value::kText, "FILE", "outside events from a list or a recorded session"});
     options.push_back({"--witness", Value::kText, "FILE",
                        "perform the run of a witness that `puppetri prove` has written"});
+    options.push_back(file_option());
     return options;
 }
 
@@ -112,6 +114,9 @@ Result<scene::PerformOptions, int> perform_options(const Arguments& arguments,
 
 Result<Staged, int> load_and_perform(const Arguments& arguments) {
     io::DiskFiles files;
+    if (!use_files(arguments, files)) {
+        return Unexpected<int>(kBadInput);
+    }
     auto scene = scene::load(files, arguments.text("scene"));
     if (!scene) {
         say_diagnostics(scene.error());

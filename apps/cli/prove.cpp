@@ -154,7 +154,7 @@ std::string json_of(const std::vector<Verdict>& verdicts, const std::vector<std:
 }
 
 int prove(const Arguments& arguments) {
-    auto subject = load_subject(arguments.text("scene"));
+    auto subject = load_subject(arguments.text("scene"), arguments);
     if (!subject) {
         return subject.error();
     }

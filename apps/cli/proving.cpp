@@ -9,6 +9,7 @@
 #include "puppetri/base/text.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/io/load_net.h"
+#include "scene_files.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -27,13 +28,17 @@ std::vector<Option> with_proving_options(std::vector<Option> options) {
                        false});
     options.push_back({"-o,--output", Value::kText, "FOLDER",
                        "where witnesses are written (default: out)", false});
+    options.push_back(file_option());
     return options;
 }
 
-Result<Subject, int> load_subject(const std::string& path) {
+Result<Subject, int> load_subject(const std::string& path, const Arguments& arguments) {
     Subject subject;
     if (path.ends_with(".pup")) {
         io::DiskFiles files;
+        if (!use_files(arguments, files)) {
+            return Unexpected<int>(kBadInput);
+        }
         auto scene = scene::load(files, path);
         if (!scene) {
             say_diagnostics(scene.error());

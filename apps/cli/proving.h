@@ -25,7 +25,7 @@ struct Subject {
     std::unique_ptr<const net::Net> net;  // of `file`
 };
 // Says what is wrong and gives the exit code otherwise.
-Result<Subject, int> load_subject(const std::string& path);
+Result<Subject, int> load_subject(const std::string& path, const Arguments& arguments);
 
 // "30", "30s", "5min"; "500M", "2G" (powers of 1024; without letter MiB).
 std::optional<double> parse_seconds(const std::string& text);

@@ -16,6 +16,7 @@
 #include "puppetri/scene/perform.h"
 #include "puppetri/verdict/explain.h"
 #include "run_net.h"
+#include "scene_files.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -71,6 +72,9 @@ int run(const Arguments& arguments) {
         return run_net(arguments);
     }
     io::DiskFiles files;
+    if (!use_files(arguments, files)) {
+        return kBadInput;
+    }
     const auto scene = scene::load(files, arguments.text("scene"));
     if (!scene) {
         say_diagnostics(scene.error());
@@ -182,7 +186,8 @@ Command run_command() {
          {"--witness", Value::kText, "FILE",
           "play the run of a witness that `puppetri prove` has written, step by step", false},
          {"--hash", Value::kFlag, "", "print the fingerprint of the log alone", false},
-         {"--json", Value::kFlag, "", "the summary as JSON on stdout", false}},
+         {"--json", Value::kFlag, "", "the summary as JSON on stdout", false},
+         file_option()},
         run};
 }
 

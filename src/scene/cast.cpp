@@ -58,11 +58,15 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
         cast.actors[index.value] = std::move(actor);
         return ActorTerm{index};
     }
-    if (kind == "character" || kind == "creature") {
+    if (kind == "character" || kind == "creature" || kind == "linkage") {
         const motion::ActorIndex index{static_cast<std::uint32_t>(cast.actors.size())};
         stage::Actor actor{.name = name, .body = stage::BodyKind::kCharacter};
         cast.actors.push_back(actor);
-        fill_character(member, scope, actor);
+        if (kind == "linkage") {
+            fill_linkage(member, scope, actor);
+        } else {
+            fill_character(member, scope, actor);
+        }
         cast.actors[index.value] = std::move(actor);
         return ActorTerm{index};
     }
@@ -85,7 +89,7 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
         return SetTerm{index};
     }
     unknown(member.kind.span, "kind of cast", kind,
-            {"mannequin", "stick", "character", "creature", "sphere", "box", "set"});
+            {"mannequin", "stick", "character", "creature", "linkage", "sphere", "box", "set"});
     return Nothing{};
 }
 

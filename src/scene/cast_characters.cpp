@@ -4,11 +4,9 @@
 #include "puppetri/figure/character.h"
 
 namespace puppetri::scene {
-namespace {
-
 // How a cast without files stands in for one that could not be read: nothing is performed with it,
 // but what else is wrong with the scene is found.
-std::shared_ptr<const figure::Character> stand_in() {
+std::shared_ptr<const figure::Character> Elaboration::stand_in_character() {
     figure::Character c;
     const figure::Figure f = figure::make_mannequin(1.75);
     c.skeleton = f.skeleton;
@@ -17,8 +15,6 @@ std::shared_ptr<const figure::Character> stand_in() {
     c.dofs = figure::humanoid_dofs(f);
     return std::make_shared<const figure::Character>(std::move(c));
 }
-
-}  // namespace
 
 // bones { hips: "Armature_Hips", left_knee: "shin.L" }
 std::vector<NamedBone> Elaboration::bones_of(const lang::Property& property) {
@@ -58,7 +54,7 @@ void Elaboration::fill_character(const lang::CastMember& member, const Scope& sc
             } else {
                 error("wrong-property", p.span, "file is not written like this",
                       "write the path in quotes: `file \"CesiumMan.glb\"`");
-                actor.character = stand_in();
+                actor.character = stand_in_character();
                 return;
             }
         } else if (name == "height") {
@@ -77,7 +73,7 @@ void Elaboration::fill_character(const lang::CastMember& member, const Scope& sc
             unknown_property(p, {"file", "height", "at", "facing", "bones"});
         }
     }
-    actor.character = stand_in();
+    actor.character = stand_in_character();
     actor.height_m = 1.75;
     if (file == nullptr) {
         error("no-file", member.name.span, "nothing says what " + member.name.text + " looks like",

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "library.h"
+#include "puppetri/figure/linkage.h"
 #include "puppetri/motion/formula_movement.h"
 #include "puppetri/motion/library.h"
 #include "puppetri/motion/own_movement.h"
@@ -261,8 +262,15 @@ class Elaboration {
     // cast_characters.cpp -- actors out of files
     void fill_character(const lang::CastMember& member, const Scope& scope, stage::Actor& actor);
     std::vector<NamedBone> bones_of(const lang::Property& property);
+    static std::shared_ptr<const figure::Character> stand_in_character();
     void load_character(const lang::CastMember& member, CharacterRequest& request,
                         stage::Actor& actor);
+    // cast_linkages.cpp -- figures put together in the scene
+    void fill_linkage(const lang::CastMember& member, const Scope& scope, stage::Actor& actor);
+    std::optional<figure::Link> link_of(const lang::Property& property, const Scope& scope,
+                                        const std::vector<figure::Link>& before);
+    std::optional<figure::LinkDof> link_dof(const lang::Property& property, const Scope& scope);
+    std::optional<figure::LinkShape> link_shape(const lang::Property& property, const Scope& scope);
     void complete_cast();
     void check_cast();
     void complete_blocks();

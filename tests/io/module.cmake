@@ -29,6 +29,14 @@ foreach(unit figure/skeleton figure/dof motion/clip motion/clip_root io/bvh_read
     list(APPEND motion_format_sources "${CMAKE_CURRENT_SOURCE_DIR}/src/${unit}.cpp")
 endforeach()
 
+# The reader of figures likewise.
+file(GLOB figure_format_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/base/*.cpp"
+    "${CMAKE_CURRENT_SOURCE_DIR}/src/math/*.cpp" "${CMAKE_CURRENT_SOURCE_DIR}/src/figure/*.cpp")
+foreach(unit io/gltf_container io/gltf_document io/gltf_reader io/gltf_reader_scene io/character_reader
+        io/character_mesh io/character_bones io/bone_names scene/file_source)
+    list(APPEND figure_format_sources "${CMAKE_CURRENT_SOURCE_DIR}/src/${unit}.cpp")
+endforeach()
+
 # The hostile tests alone, for `.ci/run`: everything under the sanitizers would take long to build.
 if(PUPPETRI_SANITIZE)
     add_executable(test_hostile_nets tests/io/net_hostile_test.cpp ${net_format_sources})
@@ -45,6 +53,13 @@ if(PUPPETRI_SANITIZE)
     puppetri_flags(test_hostile_motion)
     target_compile_definitions(test_hostile_motion PRIVATE PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     add_test(NAME hostile_motion COMMAND test_hostile_motion)
+
+    add_executable(test_hostile_figures tests/io/gltf_hostile_test.cpp ${figure_format_sources})
+    target_include_directories(test_hostile_figures PRIVATE include tests)
+    target_link_libraries(test_hostile_figures PRIVATE puppetri_test_main nlohmann_json::nlohmann_json)
+    puppetri_flags(test_hostile_figures)
+    target_compile_definitions(test_hostile_figures PRIVATE PUP_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+    add_test(NAME hostile_figures COMMAND test_hostile_figures)
 endif()
 
 # The fuzzers, by the option of tests/lang/module.cmake; their tests are short runs.
@@ -89,4 +104,13 @@ if(PUPPETRI_FUZZ)
             "-dict=${CMAKE_CURRENT_SOURCE_DIR}/tests/fuzz/motion.dict"
             "${CMAKE_CURRENT_SOURCE_DIR}/tests/corpus/motion")
     endforeach()
+
+    add_executable(fuzz_figures tests/fuzz/gltf_fuzz.cpp ${figure_format_sources})
+    target_include_directories(fuzz_figures PRIVATE include tests)
+    target_compile_options(fuzz_figures PRIVATE -g -O1 -ffp-contract=off -fsanitize=fuzzer,address,undefined
+        -fno-sanitize-recover=undefined)
+    target_link_options(fuzz_figures PRIVATE -fsanitize=fuzzer,address,undefined)
+    target_link_libraries(fuzz_figures PRIVATE nlohmann_json::nlohmann_json)
+    add_test(NAME fuzz_figures COMMAND fuzz_figures -runs=2000 -seed=1 -max_len=4000 -timeout=10
+        "-dict=${CMAKE_CURRENT_SOURCE_DIR}/tests/fuzz/gltf.dict")
 endif()
