@@ -10,6 +10,7 @@ Figure Character::moved_figure() const {
     Figure figure;
     figure.skeleton = skeleton;
     figure.limits = limits;
+    figure.dofs = dofs;
     figure.root = {0};
     figure.height_m = skeleton.height_m;
     return figure;

@@ -11,6 +11,7 @@
 
 #include "puppetri/base/elementary.h"
 #include "puppetri/base/require.h"
+#include "puppetri/figure/mannequin.h"
 #include "puppetri/math/rotation.h"
 
 namespace puppetri::figure {

@@ -187,6 +187,10 @@ class Builder {
 
 }  // namespace
 
-Figure make_humanoid(const HumanoidMeasures& measures) { return Builder(measures).build(); }
+Figure make_humanoid(const HumanoidMeasures& measures) {
+    Figure figure = Builder(measures).build();
+    figure.dofs = humanoid_dofs(figure);
+    return figure;
+}
 
 }  // namespace puppetri::figure

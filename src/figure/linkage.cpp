@@ -147,6 +147,10 @@ class Maker {
             defect("wrong-dofs", link, "it turns about more than three axes",
                    "divide it into two links");
         }
+        if (link.dofs.size() > 6) {
+            defect("wrong-dofs", link, "it has more than six degrees of freedom",
+                   "divide it into two links");
+        }
         if (link.dh && link.dofs.size() > 1) {
             defect("wrong-dofs", link, "a link with Denavit-Hartenberg parameters has one DOF",
                    "divide it into two links, or place it with `at`");

@@ -143,6 +143,13 @@ void controls_from_pose(const Figure& figure, const Pose& pose, LimbSet limbs, C
 }
 
 std::vector<JointIndex> joints_of(const Figure& f, Limb limb) {
+    if (!f.humanoid()) {
+        std::vector<JointIndex> all;
+        for (std::uint32_t j = 1; limb == Limb::kBody && j < f.skeleton.joints.size(); ++j) {
+            all.push_back({j});
+        }
+        return all;
+    }
     switch (limb) {
         case Limb::kPelvis:
             return {f.hips};

@@ -11,6 +11,7 @@
 
 #include "arm_state.h"
 #include "foot_path.h"
+#include "posed_creature.h"
 #include "puppetri/base/require.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/controls_from_pose.h"
@@ -128,7 +129,7 @@ class Posed final : public Movement {
     };
 
     void find_drives() {
-        dofs_ = figure::humanoid_dofs(figure_);
+        dofs_ = figure_.dofs;
         for (std::size_t i = 0; i < spec_.dofs.size(); ++i) {
             const figure::DofIndex dof = dofs_.find(spec_.dofs[i]);
             PUP_REQUIRE(dof.valid());
@@ -471,6 +472,9 @@ std::optional<Limb> limb_of_joint(const Figure& figure, std::string_view name) {
 
 LimbSet limbs_of(const Figure& figure, const PosedSpec& spec) {
     LimbSet limbs;
+    if (!figure.humanoid()) {
+        return limb_set(Limb::kBody);
+    }
     const auto add = [&](std::string_view joint) {
         if (const auto limb = limb_of_joint(figure, joint)) {
             limbs = limbs.with(*limb);
@@ -490,6 +494,9 @@ LimbSet limbs_of(const Figure& figure, const PosedSpec& spec) {
 
 MovementPtr make_posed(const MotionContext& context, const PosedSpec& spec,
                        std::shared_ptr<const PoseSource> source) {
+    if (!context.figure.humanoid()) {
+        return make_posed_creature(context, spec, std::move(source));
+    }
     return std::make_shared<Posed>(context, spec, std::move(source));
 }
 

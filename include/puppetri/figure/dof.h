@@ -13,9 +13,11 @@
 #include <string_view>
 #include <vector>
 
-#include "puppetri/figure/mannequin.h"
+#include "puppetri/figure/skeleton.h"
 
 namespace puppetri::figure {
+
+struct Figure;
 
 using DofIndex = Index<struct DofTag>;
 

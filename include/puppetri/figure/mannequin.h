@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "puppetri/figure/dof.h"
 #include "puppetri/figure/limits.h"
 #include "puppetri/figure/skeleton.h"
 
@@ -63,6 +64,7 @@ struct Figure {
     std::array<Arm, 2> arms;
     std::array<HandPoses, 2> hands;
     std::vector<JointLimit> limits;  // one per joint
+    DofSet dofs;                     // by which movements pose it
     Vec3 eyes_head;                  // the point between the eyes, in the space of `head`
     double hips_height_m = 0;        // of the joint `hips` in the rest pose
     double ankle_height_m = 0;       // of the ankles above the soles in the rest pose

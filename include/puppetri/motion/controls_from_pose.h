@@ -24,7 +24,8 @@ void controls_from_pose(const figure::Figure& figure, const figure::Pose& pose, 
                         Controls& out);
 
 // The joints that a limb of a humanoid poses, from the trunk outwards: pelvis the hips; body spine
-// to head; legs hip to toes; arms collar bone to finger tips.
+// to head; legs hip to toes; arms collar bone to finger tips. Of a creature all joints belong to
+// its body.
 std::vector<figure::JointIndex> joints_of(const figure::Figure& figure, Limb limb);
 
 }  // namespace puppetri::motion
