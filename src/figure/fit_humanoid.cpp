@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kShortBone = 0.01;  // parts of the height
 // A limb that is bent by more than this at rest tells about which axis it bends; less is noise.
+constexpr double kLeastToes = 0.5;
 constexpr double kTellsHinge = 0.34;  // its sine
 
 Vec3 along(double s) { return {s, 0, 0}; }
@@ -424,9 +425,13 @@ class Fit {
         if (tip - heel < 0.02 * m_.height_m) {
             tip = heel + usual.toe_tip_foot.z * m_.height_m;
         }
+        // A joint of toes in the rear half of the foot bends the instep: nobody rolls over it.
+        if (has(n("Toes")) && place(n("Toes")).z - ankle.z < heel + kLeastToes * (tip - heel)) {
+            joint_.erase(n("Toes"));
+        }
         // A foot without toes rolls over its tip: nothing of it may go into the floor.
-        leg.toes = has(n("Toes")) ? place(n("Toes")) - ankle
-                                  : Vec3{0, sole * 0.7, tip - 0.03 * (tip - heel)};
+        leg.toes =
+            has(n("Toes")) ? place(n("Toes")) - ankle : Vec3{0, sole, tip - 0.004 * (tip - heel)};
         leg.toes.z = std::fmin(std::fmax(leg.toes.z, heel + 0.3 * (tip - heel)), tip);
         leg.heel_foot = {0, sole, heel};
         leg.ball_foot = {leg.toes.x, sole, leg.toes.z};

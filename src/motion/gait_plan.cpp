@@ -42,6 +42,9 @@ constexpr double kSlips = 0.9981, kStanding = 0.9969;
 // is long), and at rest.
 constexpr double kEasySwing_s = 0.32, kHurry_s = 0.035, kEasy_m_s2 = 3.2;
 constexpr double kMostLag_m = 0.09, kMostSlowLead_m = 0.04, kMostRestLag_m = 0.09;
+// Parts of the leg from the ankle to the ball of the foot and back to the heel, at most, for which
+// the pitches of half steps are meant.
+constexpr double kUsualLever = 0.152, kUsualHeel = 0.072;
 constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down. Less
 constexpr double kLessPerDuty = 1.15;    // for each duty above 0.62: both feet are down that long
 constexpr double kRollFlat_s = 0.2;      // of the foot that just landed
@@ -344,7 +347,10 @@ class Planner {
         // that all is smooth.
         const Footprint print = footprint_of(f_, side, swing_);
         const double early = clamp(plan_.lift_s / (0.049 * n_), 0, 1);
-        double lift_to = radians(-4) * early * early;
+        // A long lever from the ankle to where the foot rolls lifts the ankle farther.
+        const double lever = f_.legs[index_of(side)].ball_foot.z / f_.leg_m;
+        double lift_to =
+            radians(-4) * early * early * std::fmin(1, kUsualLever / std::fmax(lever, 1e-3));
         if (!first_ && planted) {
             const Vec3 front =
                 path_from_world_ * plan_.feet[index_of(support_side_)].at(lift).ankle_world;
@@ -362,7 +368,9 @@ class Planner {
             const double lowest =
                 hips_height(support_side_, back, pelvis, turn_at(strike), kShortest) + 0.004;
             const double late = (plan_.duration_s - plan_.strike_s) / (0.049 * n_);
-            strike_to = last_ ? radians(5) * late * late
+            const double heel = -f_.legs[index_of(side)].heel_foot.z / f_.leg_m;
+            const double slow = std::fmin(1, kUsualHeel / std::fmax(heel, 1e-3));
+            strike_to = last_ ? radians(5) * late * late * slow
                               : pitch_for(side, landing, pelvis, turn_at(strike), kLanding, lowest,
                                           radians(8), radians(38));
         }
