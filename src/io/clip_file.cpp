@@ -6,7 +6,7 @@
 
 #include "clip_take.h"
 #include "clip_tidy.h"
-#include "puppetri/figure/dof.h"
+#include "puppetri/figure/mannequin.h"
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/bvh_reader.h"
 #include "puppetri/io/bvh_writer.h"

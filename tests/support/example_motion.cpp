@@ -6,12 +6,14 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "puppetri/figure/character.h"
 #include "puppetri/io/disk_files.h"
 
 namespace puppetri::test {
 namespace {
 
 constexpr double kRate_hz = 480;
+const std::string kCesiumMan = PUP_SOURCE_DIR "/../shared/motion/CesiumMan.glb";
 
 SimTime at(double t_s) {
     return {static_cast<std::int64_t>(std::nearbyint(t_s * kTicksPerSecond))};
@@ -27,6 +29,9 @@ SimTime at(double t_s) {
 }  // namespace
 
 figure::Figure Example::figure(std::uint32_t actor) const {
+    if (const auto& character = scene->play.cast.actors[actor].character) {
+        return character->moved_figure();
+    }
     return figure::make_mannequin(scene->play.cast.actors[actor].height_m);
 }
 
@@ -38,6 +43,7 @@ const Example& example(const std::string& name) {
         }
     }
     io::DiskFiles files;
+    files.replace("CesiumMan.glb", kCesiumMan);
     auto loaded = scene::load(files, PUP_SOURCE_DIR "/examples/" + name);
     if (!loaded) {
         give_up(name, loaded.error());
@@ -52,6 +58,32 @@ const Example& example(const std::string& name) {
     made->performed = std::move(*performed);
     known.push_back(std::move(made));
     return *known.back();
+}
+
+bool has_character_files() {
+    const bool there = io::DiskFiles().read(kCesiumMan).has_value();
+    if (!there) {
+        std::printf("skipped: ../shared/motion/CesiumMan.glb is missing\n");
+    }
+    return there;
+}
+
+void bones_of_character(const figure::Character& character,
+                        std::span<const Transform> world_from_joint,
+                        std::span<Transform> world_from_bone) {
+    const figure::Skeleton& bones = character.humanoid->figure.skeleton;
+    for (std::uint32_t b = 0; b < bones.joints.size(); ++b) {
+        const figure::Joint& bone = bones.joints[b];
+        world_from_bone[b] = bone.parent.valid()
+                                 ? world_from_bone[bone.parent.value] * bone.parent_from_joint_rest
+                                 : Transform{};
+        for (const figure::RigBone& rig : character.humanoid->rig.bones) {
+            if (rig.bone.value == b) {
+                world_from_bone[b] =
+                    world_from_joint[rig.joint.value] * inverse(rig.bone_from_joint);
+            }
+        }
+    }
 }
 
 std::vector<Planted> planted_of(const Example& e, std::uint32_t actor, double end_s) {
@@ -91,17 +123,25 @@ std::vector<double> joins_of(const Example& e, std::uint32_t actor, double end_s
 Measures measured_on_stage(const Example& e, std::uint32_t actor, double begin_s, double end_s) {
     const figure::Figure figure = e.figure(actor);
     figure::Pose pose;
-    return measure({.figure = figure,
-                    .sample =
-                        [&](double t, std::span<Transform> world) {
-                            e.performance().pose({actor}, at(t), pose);
-                            figure::to_model_space(figure.skeleton, pose, world);
-                        },
-                    .begin_s = begin_s,
-                    .end_s = end_s,
-                    .rate_hz = kRate_hz,
-                    .planted = planted_of(e, actor, end_s),
-                    .joins_s = joins_of(e, actor, end_s)});
+    return measure(
+        {.figure = figure,
+         .sample =
+             [&](double t, std::span<Transform> world) {
+                 e.performance().pose({actor}, at(t), pose);
+                 const figure::Skeleton& skeleton = *e.performance().actors()[actor].skeleton;
+                 if (!e.performance().actors()[actor].own_rest) {
+                     figure::to_model_space(skeleton, pose, world);
+                     return;
+                 }
+                 std::vector<Transform> joints(skeleton.joints.size());
+                 figure::to_model_space(skeleton, pose, joints);
+                 bones_of_character(*e.scene->play.cast.actors[actor].character, joints, world);
+             },
+         .begin_s = begin_s,
+         .end_s = end_s,
+         .rate_hz = kRate_hz,
+         .planted = planted_of(e, actor, end_s),
+         .joins_s = joins_of(e, actor, end_s)});
 }
 
 std::vector<Stretch> stretches_of(const Example& e, std::uint32_t actor, double end_s) {

@@ -3,9 +3,11 @@
 // needs to know about them: when feet are meant to stand, where movements join.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "puppetri/figure/character.h"
 #include "puppetri/scene/perform.h"
 #include "support/measure.h"
 
@@ -27,6 +29,17 @@ struct Example {
 
 // Ends the program when the example cannot be performed.
 const Example& example(const std::string& name);
+
+// Whether the files are there with which example 06 is performed; says that it is skipped
+// otherwise.
+bool has_character_files();
+
+// What the instrument wants to see, of joints of a character's own skeleton in the world: the bones
+// of its humanoid, each where its joint is and turned as it is turned against the T-pose. Bones
+// without a joint stay with their parents.
+void bones_of_character(const figure::Character& character,
+                        std::span<const Transform> world_from_joint,
+                        std::span<Transform> world_from_bone);
 
 // When the feet of an actor stand, as the performance says, to 1/480 s.
 std::vector<Planted> planted_of(const Example& example, std::uint32_t actor, double end_s);

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// Example 06: a character from a file walks and plays ball, measured as mannequins are, on the
+// stage and in the exported file read back by a reader that shares no code with Puppetri. The
+// instrument sees the character's own joints.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "puppetri/io/bvh_writer.h"
+#include "puppetri/io/gltf_document.h"
+#include "puppetri/io/gltf_writer.h"
+#include "support/bvh_reader.h"
+#include "support/example_motion.h"
+#include "support/gltf_reader.h"
+
+using namespace puppetri;
+using test::Example;
+
+namespace {
+
+constexpr const char* kWalk = "06_character/walk.pup";
+constexpr const char* kBall = "06_character/ball.pup";
+
+const figure::Character& character_of(const Example& e, std::uint32_t actor) {
+    return *e.scene->play.cast.actors[actor].character;
+}
+
+std::uint32_t number_of(const Example& e, const std::string& name) {
+    std::uint32_t i = 0;
+    while (e.actor(i) != name) {
+        ++i;
+    }
+    return i;
+}
+
+void check_feet_and_joints(const test::Measures& m, double slip_mm) {
+    CHECK_MESSAGE(m.slip_mm.value <= slip_mm, m.slip_mm.where, " at ", m.slip_mm.at_s);
+    CHECK_MESSAGE(m.sink_mm.value <= 2, m.sink_mm.where, " at ", m.sink_mm.at_s);
+    CHECK_MESSAGE(m.hover_mm.value <= 2, m.hover_mm.where, " at ", m.hover_mm.at_s);
+    CHECK_MESSAGE(m.swing_sink_mm.value <= 2, m.swing_sink_mm.where, " at ", m.swing_sink_mm.at_s);
+    CHECK(m.limit_excess_deg.value <= 0.01);
+    CHECK(m.knee.speed_rad_s.value <= 10);
+    CHECK(m.hip.speed_rad_s.value <= 6);
+    CHECK(m.ankle.speed_rad_s.value <= 8);
+    CHECK(m.spine.speed_rad_s.value <= 3);
+    CHECK(m.arm.speed_rad_s.value <= 20);
+    for (const test::JointMeasures* j : {&m.knee, &m.hip, &m.ankle, &m.spine, &m.neck}) {
+        CHECK(j->acceleration_rad_s2.value <= 400);
+    }
+    CHECK(m.pelvis_acceleration.value <= 4);
+}
+
+io::Take take_of(const Example& e) {
+    auto take = io::sample_take(e.performance(), {});
+    REQUIRE(take);
+    return std::move(*take);
+}
+
+Transform from_eigen(const Eigen::Isometry3d& placed, double metres) {
+    const Eigen::Quaterniond q(placed.linear());
+    const Eigen::Vector3d t = placed.translation() * metres;
+    return {{q.x(), q.y(), q.z(), q.w()}, {t.x(), t.y(), t.z()}};
+}
+
+}  // namespace
+
+TEST_CASE("CesiumMan's walk holds the table of good motion at 480 Hz [law]") {
+    if (!test::has_character_files()) {
+        return;
+    }
+    const Example& e = test::example(kWalk);
+    CHECK(e.performed.notes.empty());
+    const test::Measures m = test::measured_on_stage(e, 0, 0, e.end_s());
+    CAPTURE(test::report(m));
+    check_feet_and_joints(m, 1);
+    CHECK(m.knee_stance_deg.value <= 25);
+    CHECK(m.rise_mm >= 20);
+    CHECK(m.rise_mm <= 60);
+    CHECK(m.sway_mm >= 20);
+    CHECK(m.sway_mm <= 50);
+    CHECK(m.steps.size() == 4);
+    for (const test::Step& step : m.steps) {
+        CHECK(step.knee_deg >= 50);
+        CHECK(step.knee_deg <= 70);
+        CHECK(step.clearance_mm >= 10);
+        CHECK(step.clearance_mm <= 60);
+    }
+    CHECK(m.join_position_m.value <= 1e-6);
+    CHECK(m.join_pelvis_m_s.value <= 0.05);
+    CHECK(m.join_foot_m_s.value <= 0.2);
+    CHECK(m.join_hand_m_s.value <= 0.2);
+}
+
+TEST_CASE("CesiumMan and the mannequin play ball: feet, joints, joins, and throws go on [law]") {
+    if (!test::has_character_files()) {
+        return;
+    }
+    const Example& e = test::example(kBall);
+    for (const Diagnostic& note : e.performed.notes) {
+        FAIL_CHECK(note.code << ": " << note.element << ": " << note.message);
+    }
+    const test::Measures m = test::measured_on_stage(e, number_of(e, "cem"), 0, 20);
+    CAPTURE(test::report(m));
+    check_feet_and_joints(m, 1);
+    CHECK(m.arm.acceleration_rad_s2.value <= 1500);
+    CHECK(m.join_position_m.value <= 1e-6);
+    CHECK(m.join_pelvis_m_s.value <= 0.05);
+    CHECK(m.join_hand_m_s.value <= 0.2);
+    int thrown = 0, caught = 0;
+    for (const stage::StageEvent& event : e.performance().events()) {
+        thrown += event.name == "release" && event.actor == "cem";
+        caught += event.name == "catch" && event.actor == "cem";
+    }
+    CHECK(thrown >= 3);
+    CHECK(caught >= 3);
+    // They do not drift apart for ever.
+    figure::Pose a, b;
+    const SimTime end = e.performance().duration();
+    e.performance().pose({number_of(e, "ana")}, end, a);
+    e.performance().pose({number_of(e, "cem")}, end, b);
+    CHECK(length(a.parent_from_joint[0].translation - b.parent_from_joint[0].translation) < 4);
+}
+
+TEST_CASE("the palms of a character stay on the ball that it holds, within 1 mm [law]") {
+    if (!test::has_character_files()) {
+        return;
+    }
+    const Example& e = test::example(kBall);
+    const std::uint32_t cem = number_of(e, "cem");
+    const figure::Character& c = character_of(e, cem);
+    const figure::Figure figure = e.figure(cem);
+    const double radius_m = e.performance().props()[0].size_m.x / 2;
+    double worst_m = 0;
+    int held = 0;
+    figure::Pose pose;
+    std::vector<Transform> joints(c.skeleton.joints.size()), bones(figure.skeleton.joints.size());
+    for (double t = 0; t < 20; t += 1 / 60.0) {
+        const SimTime at{static_cast<std::int64_t>(t * kTicksPerSecond)};
+        if (e.performance().holder({0}, at) != "cem.hands") {
+            continue;
+        }
+        ++held;
+        e.performance().pose({cem}, at, pose);
+        figure::to_model_space(c.skeleton, pose, joints);
+        test::bones_of_character(c, joints, bones);
+        for (const figure::Arm& arm : figure.arms) {
+            const Vec3 palm = bones[arm.hand.value] * arm.hand_from_palm.translation;
+            const Vec3 ball = e.performance().world_from_prop({0}, at).translation;
+            worst_m = std::fmax(worst_m, std::fabs(length(palm - ball) - radius_m));
+        }
+    }
+    CHECK(held > 200);
+    CHECK(worst_m < 0.001);
+}
+
+TEST_CASE("the exported walk keeps the table when it is read back, and stays textured [oracle]") {
+    if (!test::has_character_files()) {
+        return;
+    }
+    const Example& e = test::example(kWalk);
+    const figure::Character& c = character_of(e, 0);
+    const figure::Figure figure = e.figure(0);
+    const io::Take take = take_of(e);
+    const std::string glb = io::make_glb({std::span(&take, 1), {}, {}}, {});
+    const test::GltfFile file = test::read_gltf(glb);
+    std::vector<std::size_t> nodes;
+    for (const figure::Joint& joint : c.skeleton.joints) {
+        nodes.push_back(static_cast<std::size_t>(file.find("cem_" + joint.name)));
+    }
+    const double end_s = take.times.back().seconds();
+    std::vector<Transform> joints(nodes.size());
+    const test::Measures m = test::measure({.figure = figure,
+                                            .sample =
+                                                [&](double t, std::span<Transform> bones) {
+                                                    const auto world = file.pose(0, t);
+                                                    for (std::size_t j = 0; j < nodes.size(); ++j) {
+                                                        joints[j] = from_eigen(world[nodes[j]], 1);
+                                                    }
+                                                    test::bones_of_character(c, joints, bones);
+                                                },
+                                            .begin_s = 0,
+                                            .end_s = end_s,
+                                            .rate_hz = 24,
+                                            .planted = test::planted_of(e, 0, end_s)});
+    CAPTURE(test::report(m));
+    check_feet_and_joints(m, 2);
+
+    // The skin that arrives at rest is the one that was read, and wears its picture.
+    const auto document = io::GltfDocument::parse(glb, "walk.glb", nullptr);
+    REQUIRE(document.has_value());
+    REQUIRE(document->images.size() == 1);
+    CHECK(document->images[0].bytes == c.mesh.textures[0].bytes);
+    REQUIRE(document->meshes.size() == 1);
+    const io::GltfPrimitiveIn& p = document->meshes[0].primitives[0];
+    REQUIRE(p.uvs != io::kNoGltf);
+    CHECK(document->floats(p.uvs)[0] == c.mesh.uvs[0][0]);
+    CHECK(document->count(p.positions) == c.mesh.positions.size());
+    CHECK(document->materials[p.material].base_colour_texture == 0);
+}
+
+TEST_CASE(
+    "a character's BVH has its own joints, and they go where the performance has them [oracle]") {
+    if (!test::has_character_files()) {
+        return;
+    }
+    const Example& e = test::example(kWalk);
+    const figure::Character& c = character_of(e, 0);
+    const io::Take take = take_of(e);
+    const test::Bvh bvh = test::read_bvh(io::make_bvh(take, 0, {}));
+    figure::Pose pose;
+    std::vector<Transform> joints(c.skeleton.joints.size());
+    for (std::size_t frame = 0; frame < bvh.frames.size(); frame += 7) {
+        const auto world = bvh.pose(frame);
+        e.performance().pose({0}, take.rate.time_of(static_cast<std::int64_t>(frame)), pose);
+        figure::to_model_space(c.skeleton, pose, joints);
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            const int at = bvh.find(c.skeleton.joints[j].name);
+            REQUIRE(at >= 0);
+            const Vec3 there = from_eigen(world[static_cast<std::size_t>(at)], 0.01).translation;
+            CHECK(length(there - joints[j].translation) < 1e-5);
+        }
+    }
+}
