@@ -49,7 +49,7 @@ int run_net(const Arguments& arguments) {
             return kBadInput;
         }
     }
-    const auto subject = load_subject(arguments.text("scene"));
+    const auto subject = load_subject(arguments.text("scene"), arguments);
     if (!subject) {
         return subject.error();
     }

@@ -3,6 +3,7 @@
 
 #include "puppetri/figure/character.h"
 #include "puppetri/io/character_reader.h"
+#include "puppetri/io/clip_file.h"
 #include "puppetri/motion/clip.h"
 #include "puppetri/scene/file_source.h"
 
@@ -10,12 +11,14 @@ namespace puppetri::io {
 namespace {
 
 Unexpected<Diagnostics> unreadable(const std::string& path, std::string message) {
-    return Unexpected(Diagnostics{{Severity::kError,
-                                   "cannot-read",
-                                   {path, 0, 0, 1},
-                                   "file",
-                                   std::move(message),
-                                   "name a file that is there, from the folder of the scene"}});
+    return Unexpected(Diagnostics{
+        {Severity::kError,
+         "cannot-read",
+         {path, 0, 0, 1},
+         "file",
+         std::move(message),
+         "name a file that is there, seen from the folder of the scene, or say where it is: "
+         "--file NAME=PATH"}});
 }
 
 }  // namespace
@@ -35,7 +38,12 @@ Checked<scene::LoadedCharacter> FileAssets::character(const scene::CharacterRequ
 
 Checked<std::shared_ptr<const std::vector<motion::Clip>>> FileAssets::clips(
     const std::string& path) {
-    return unreadable(path, "clips of files cannot be read here");
+    auto bytes = files_.read(path);
+    if (!bytes) {
+        return unreadable(path, bytes.error().message);
+    }
+    PUP_TRY(ClipFile file, parse_clips(std::move(*bytes), path, {}, &files_));
+    return std::make_shared<const std::vector<motion::Clip>>(std::move(file.clips));
 }
 
 }  // namespace puppetri::io

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "puppetri/figure/mannequin.h"
 #include "puppetri/math/rotation.h"
 
 using namespace puppetri;
