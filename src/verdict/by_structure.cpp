@@ -9,6 +9,7 @@
 #include "puppetri/proof/coverability.h"
 #include "puppetri/proof/state_equation.h"
 #include "puppetri/proof/structural_liveness.h"
+#include "token_cases.h"
 
 namespace puppetri::verdict {
 
@@ -201,6 +202,49 @@ std::optional<StructuralProof> Structure::by_theorem(const proof::Budget& budget
     return StructuralProof{.method = "theorem", .notes = {theorem_}};
 }
 
+std::optional<std::vector<proof::Invariant>> Structure::exclude(const Predicate& bad,
+                                                                const proof::Budget& budget) {
+    const auto cases = token_cases(bad);
+    std::vector<proof::Invariant> out;
+    const auto use = [&](const proof::Invariant& i) {
+        if (std::find(out.begin(), out.end(), i) == out.end()) {
+            out.push_back(i);
+        }
+        if (std::find(known_.begin(), known_.end(), i) == known_.end()) {
+            known_.push_back(i);
+        }
+    };
+    if (!cases || cases->size() < 2) {
+        auto used = proof::prove_by_invariants(plain_.net, bad, budget, emptied_);
+        for (std::size_t k = 0; used && k < used->size(); ++k) {
+            use((*used)[k]);
+        }
+        return used;
+    }
+    for (const TokenCase& one : *cases) {
+        const auto known =
+            std::find_if(known_.begin(), known_.end(),
+                         [&](const proof::Invariant& i) { return excludes(i, one); });
+        if (known != known_.end()) {
+            use(proof::Invariant(*known));
+            continue;
+        }
+        std::vector<Predicate> all;
+        for (const proof::LinearSum::Term& t : one) {
+            all.push_back(Predicate::at_least({{{t.place, 1}}}, t.factor));
+        }
+        const auto used =
+            proof::prove_by_invariants(plain_.net, Predicate::all_of(all), budget, emptied_);
+        if (!used) {
+            return std::nullopt;
+        }
+        for (const proof::Invariant& i : *used) {
+            use(i);
+        }
+    }
+    return out;
+}
+
 std::optional<StructuralProof> Structure::by_invariants(const net::Rule& rule,
                                                         const HostLowering* host,
                                                         const proof::Budget& budget) {
@@ -210,7 +254,7 @@ std::optional<StructuralProof> Structure::by_invariants(const net::Rule& rule,
     }
     StructuralProof out{.method = "invariants"};
     for (const Predicate& bad : *cases) {
-        const auto used = proof::prove_by_invariants(plain_.net, bad, budget, emptied_);
+        const auto used = exclude(bad, budget);
         if (!used) {
             return std::nullopt;
         }

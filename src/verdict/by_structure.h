@@ -10,6 +10,7 @@
 #include "builtin_rules.h"
 #include "puppetri/proof/budget.h"
 #include "puppetri/proof/plain_net.h"
+#include "puppetri/proof/state_equation.h"
 #include "puppetri/verdict/obligation.h"
 
 namespace puppetri::verdict {
@@ -32,12 +33,16 @@ class Structure {
     std::optional<StructuralProof> by_invariants(const net::Rule& rule, const HostLowering* host,
                                                  const proof::Budget& budget);
     std::optional<StructuralProof> by_theorem(const proof::Budget& budget);
+    // The invariants by which none of the cases can be; nothing if that is not proved.
+    std::optional<std::vector<proof::Invariant>> exclude(const proof::Predicate& bad,
+                                                         const proof::Budget& budget);
     bool instants_end() const;
 
     const net::Net& net_;
     proof::Plain plain_;
     std::vector<std::uint8_t> emptied_;
     std::vector<std::string_view> names_;
+    std::vector<proof::Invariant> known_;  // used before: they often answer the next question too
     std::optional<bool> live_;
     std::string theorem_;
 
