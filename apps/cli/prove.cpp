@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "paragraph.h"
 #include "proving.h"
 #include "puppetri/base/text.h"
 #include "puppetri/io/atomic_file.h"
@@ -40,7 +41,8 @@ std::string size_of(const Verdict& v) {
     return v.states == 0 ? "" : std::to_string(v.states) + " states";
 }
 
-void print_table(const std::vector<Verdict>& verdicts, const std::vector<std::string>& witnesses) {
+void print_table(const std::vector<Verdict>& verdicts, const std::vector<std::string>& witnesses,
+                 const std::string& scene, bool verbose) {
     std::size_t names = 4, rules = 4, methods = 6, sizes = 4;
     for (const Verdict& v : verdicts) {
         names = std::max(names, verdict::name_of(v).size());
@@ -49,6 +51,7 @@ void print_table(const std::vector<Verdict>& verdicts, const std::vector<std::st
         sizes = std::max(sizes, size_of(v).size());
     }
     std::vector<std::string> assumptions;
+    const Verdict* refuted = nullptr;
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
         const Verdict& v = verdicts[i];
         std::printf("%s%s%s  %s  %s  %s  %s\n", colours() ? colour_of(v) : "",
@@ -60,7 +63,7 @@ void print_table(const std::vector<Verdict>& verdicts, const std::vector<std::st
             std::printf("%s\"%s\"\n", indent.c_str(), v.caption.c_str());
         }
         if (!v.reason.empty()) {
-            std::printf("%s%s\n", indent.c_str(), v.reason.c_str());
+            print_paragraph(v.reason, indent.size());
         }
         if (v.sample) {
             std::printf("%s%s of %s runs kept it: probability %s to %s (confidence %s)\n",
@@ -70,26 +73,29 @@ void print_table(const std::vector<Verdict>& verdicts, const std::vector<std::st
                         number_to_text_fixed(v.sample->high, 4).c_str(),
                         number_to_text(v.sample->confidence).c_str());
         }
-        constexpr std::size_t kWide = 100;
+        const std::size_t room = columns() > indent.size() ? columns() - indent.size() : 0;
         for (const std::string& note : v.notes) {
-            if (count_code_points(note) <= kWide) {
-                std::printf("%s%s\n", indent.c_str(), note.c_str());
-            }
+            print_paragraph(verbose ? note : short_sum(note, room), indent.size());
         }
         if (!witnesses[i].empty()) {
             std::printf("%switness: %s\n", indent.c_str(), witnesses[i].c_str());
         }
-        for (const std::string& a : v.assumptions) {
-            if (std::find(assumptions.begin(), assumptions.end(), a) == assumptions.end()) {
-                assumptions.push_back(a);
-            }
+        assumptions.insert(assumptions.end(), v.assumptions.begin(), v.assumptions.end());
+        if (refuted == nullptr && v.answer == Answer::kRefuted && v.witness) {
+            refuted = &v;
         }
     }
     if (!assumptions.empty()) {
-        std::printf("\nassuming (checked at each preparation):\n");
-        for (const std::string& a : assumptions) {
-            std::printf("  %s\n", a.c_str());
+        std::printf("\nassuming:\n");
+        std::sort(assumptions.begin(), assumptions.end());
+        assumptions.erase(std::unique(assumptions.begin(), assumptions.end()), assumptions.end());
+        for (const std::string& a : verbose ? assumptions : said_once(assumptions)) {
+            print_paragraph(a, 2);
         }
+    }
+    if (refuted != nullptr && !scene.empty()) {
+        std::printf("\nwhy, and what would mend it: puppetri explain %s %s\n", scene.c_str(),
+                    refuted->rule.c_str());
     }
 }
 
@@ -176,6 +182,9 @@ int prove(const Arguments& arguments) {
         say_error("there is no rule " + options->only);
         return kBadInput;
     }
+    if (verdicts.empty() && !arguments.given("--json")) {
+        std::puts("there is nothing to prove: it has no rules, and no figures that move");
+    }
     const std::string folder = arguments.text("--output", "out");
     std::vector<std::string> witnesses(verdicts.size());
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
@@ -196,7 +205,8 @@ int prove(const Arguments& arguments) {
     if (arguments.given("--json")) {
         std::puts(json_of(verdicts, witnesses, status).c_str());
     } else {
-        print_table(verdicts, witnesses);
+        print_table(verdicts, witnesses, subject->scene ? arguments.text("scene") : "",
+                    arguments.given("--verbose"));
     }
     if (interrupted()) {
         say("stopped: what is UNKNOWN may be known with more time");
@@ -228,6 +238,7 @@ Command prove_command() {
              {"--samples", Value::kInteger, "N", "sample so many runs where nothing else answers",
               false},
              {"--accept-sampled", Value::kFlag, "", "let SAMPLED count as proved", false},
+             {"-v,--verbose", Value::kFlag, "", "invariants and assumptions in full", false},
              {"--json", Value::kFlag, "", "the verdicts as JSON on stdout", false}}),
         prove};
 }

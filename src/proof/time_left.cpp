@@ -236,7 +236,9 @@ std::vector<std::string> assumed(const World& world) {
             const TickRange range = movement_range(world, p);
             if (range.high < kWaiting) {
                 list.push_back("place " + std::string(n.places.path(p)) + ": its movement takes " +
-                               time_in_words(range.low) + " .. " + time_in_words(range.high));
+                               time_in_words(range.low) +
+                               (range.low == range.high ? "" : " .. " + time_in_words(range.high)) +
+                               " (checked at each preparation)");
             }
         }
     }
