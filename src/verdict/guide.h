@@ -26,7 +26,8 @@ class Track {
     std::uint32_t distance() const { return nearest(nodes_); }
     // Of all nodes that it may be in, none leads to what is awaited.
     bool hopeless() const {
-        return std::all_of(nodes_.begin(), nodes_.end(),
+        const std::vector<std::uint32_t> now = here();
+        return std::all_of(now.begin(), now.end(),
                            [&](std::uint32_t n) { return hunt_.finding->certain[n] != 0; });
     }
     // Those that it may be in right after the last moment, without waiting.

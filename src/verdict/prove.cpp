@@ -549,6 +549,12 @@ class Prover {
                     return;
                 }
                 chase(part, *f, w, true);
+                if (w.verdict.answer == Answer::kUnknown && f->sure) {
+                    w.verdict.answer = Answer::kRefuted;
+                    w.verdict.assumptions = graph.assumptions;
+                    w.verdict.reason = "the formula does not hold at the start";
+                    w.verdict.notes.push_back("no single run shows it: it is about all of them");
+                }
                 if (w.verdict.answer != Answer::kUnknown) {
                     w.verdict.method = name_of(method);
                 } else if (possible && graph.graph.exact && !has_coincidences(graph)) {
@@ -727,8 +733,8 @@ class Prover {
         if (!decides) {
             return;
         }
-        const bool possible =
-            w.asked.question == Question::kRule && w.asked.rule.kind == net::RuleKind::kPossible;
+        const bool possible = f.proves || (w.asked.question == Question::kRule &&
+                                           w.asked.rule.kind == net::RuleKind::kPossible);
         w.verdict.answer = possible ? Answer::kProved : Answer::kRefuted;
         w.verdict.reason = possible ? "" : f.reason;
     }

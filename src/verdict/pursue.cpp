@@ -270,8 +270,7 @@ class Attempt {
     bool goes_on() {
         found(player_.firings());
         const net::RuleKind kind = hunt_.obligation->kind;
-        if (kind != net::RuleKind::kLeadsTo && kind != net::RuleKind::kEnds &&
-            kind != net::RuleKind::kFormula) {
+        if (kind != net::RuleKind::kLeadsTo && kind != net::RuleKind::kEnds && !linear_) {
             return true;
         }
         constexpr int kMost = 400;

@@ -2,6 +2,8 @@
 #include "temporal_rule.h"
 
 #include <algorithm>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -76,6 +78,45 @@ Polarity polarity_of(const Temporal& formula) {
     return out;
 }
 
+// A run that gets to one state of a set decides the formula: EF x is true where x must hold, AG x
+// false where it cannot. Looks through what negations, `and` and `or` at its root leave of that.
+// Gives  whether there is such a set: f.certain, by the states of the graph, and f.proves.
+bool by_one_state(const Temporal& formula, proof::CtlChecker& checker,
+                  std::span<const std::uint32_t> atoms, const proof::Budget& budget, Finding& f) {
+    using Op = Temporal::Op;
+    struct Part {
+        std::uint32_t node;
+        bool value;   // of this part
+        bool proves;  // the root's value then
+    };
+    const auto root = static_cast<std::uint32_t>(formula.nodes.size()) - 1;
+    std::vector<Part> open = {{root, true, true}, {root, false, false}};
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        const Part part = open[i];
+        const Temporal::Node& n = formula.nodes[part.node];
+        if (n.op == Op::kNot) {
+            open.push_back({n.a, !part.value, part.proves});
+        } else if (n.op == Op::kAnd || n.op == Op::kOr) {
+            if ((n.op == Op::kOr) == part.value) {  // one operand is enough
+                open.push_back({n.a, part.value, part.proves});
+                open.push_back({n.b, part.value, part.proves});
+            }
+        } else if (n.op == Op::kSomeUntil && part.value && formula.nodes[n.a].op == Op::kTrue) {
+            Temporal inner = formula;
+            inner.nodes.resize(n.b + 1);
+            const auto labels = checker.label(inner, atoms, budget);
+            if (!labels || labels->must.empty()) {
+                continue;
+            }
+            f.certain.assign(labels->must.size(), 0);
+            labels->must.for_each([&](std::uint32_t s) { f.certain[s] = 1; });
+            f.proves = part.proves;
+            return true;
+        }
+    }
+    return false;
+}
+
 std::vector<std::uint32_t> numbers(std::size_t count) {
     std::vector<std::uint32_t> out(count);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -136,13 +177,29 @@ Finding check_temporal(const net::Net& net, const Obligation& o, const GraphView
     const Polarity polarity = polarity_of(*o.temporal);
     if (truth == proof::Truth::kTrue && (graph.over || (graph.exact && !polarity.odd))) {
         f.kind = Kind::kHolds;
-    } else if (truth == proof::Truth::kFalse && graph.exact && (graph.over || !polarity.even)) {
+    } else if (truth != proof::Truth::kTrue && graph.over && !graph.exact &&
+               by_one_state(*o.temporal, checker, atoms, budget, f) &&
+               !(truth == proof::Truth::kFalse && f.proves)) {
+        auto kept = std::make_shared<LinearGame>();
+        kept->moments = std::move(moments);
+        f.kind = Kind::kSuspect;
+        f.target = Finding::Target::kHopeless;
+        f.product = make_product(kept->moments.graph, nullptr, kMostEdges);
+        f.targets.resize(f.product.size());
+        for (std::uint32_t n = 0; n < f.product.size(); ++n) {
+            f.targets[n] = f.certain[f.product.state[n]];
+        }
+        f.certain = f.targets;
+        f.game = std::move(kept);
+        f.sure = truth == proof::Truth::kFalse;
+        f.reason = f.proves ? "a run may get there" : "a run gets to where it fails";
+    } else if (truth == proof::Truth::kFalse && (graph.over || (graph.exact && !polarity.even))) {
         f.kind = Kind::kRefuted;
         f.reason = "the formula does not hold at the start";
         take(f,
-             o.temporal->logic == Temporal::Logic::kState
-                 ? std::optional(proof::Lasso{})
-                 : checker.evidence(*o.temporal, atoms, budget),
+             o.temporal->logic == Temporal::Logic::kState ? std::optional(proof::Lasso{})
+             : graph.exact ? checker.evidence(*o.temporal, atoms, budget)
+                           : std::nullopt,
              moments);
     } else {
         f.reason = truth == proof::Truth::kUnknown || graph.over

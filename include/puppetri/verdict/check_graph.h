@@ -56,7 +56,9 @@ struct Finding {
     Product product;                         // of kSuspect
     Nodes targets;                           // where to look
     Nodes certain;                           // of kHopeless
-    std::shared_ptr<const LinearGame> game;  // of kLinear; holds what `product` points to
+    std::shared_ptr<const LinearGame> game;  // of kLinear; else it only holds product.graph
+    bool sure = false;                       // refuted also if no run is found: every run fails
+    bool proves = false;                     // a run into `targets` proves the rule
     std::uint32_t transition = ~std::uint32_t{0};
     std::string subject;  // who freezes
     // Of kRefuted, if one run shows it: edges from the start, and from which of them on it goes
