@@ -369,12 +369,13 @@ void GltfReader::read_views() {
             made.length = whole(views[i], "byteLength", element, kMostBytes).value_or(0);
             made.stride =
                 static_cast<std::uint32_t>(whole(views[i], "byteStride", element, 253).value_or(0));
+            // One that is wrong is empty: nothing is read from it.
             if (buffer == kNoGltf) {
                 bad(element, "it names no buffer");
-                made.length = 0;
+                made = {};
             } else if (made.offset + made.length > doc_.buffers_[buffer].size()) {
                 bad(element, "it reaches beyond the end of buffer " + std::to_string(buffer));
-                made.length = 0;
+                made = {};
             } else {
                 made.buffer = buffer;
             }
@@ -572,7 +573,8 @@ void GltfReader::read_images() {
                     bad(element, "it has no data");
                 } else {
                     const GltfDocument::View& v = doc_.views_[view];
-                    made.bytes = doc_.buffers_[v.buffer].substr(v.offset, v.length);
+                    made.bytes =
+                        v.length > 0 ? doc_.buffers_[v.buffer].substr(v.offset, v.length) : "";
                 }
             }
             // What it is, its first bytes know best.
