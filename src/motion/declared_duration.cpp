@@ -3,8 +3,11 @@
 
 #include <algorithm>
 
+#include "puppetri/math/rotation.h"
 #include "puppetri/motion/arguments.h"
 #include "puppetri/motion/gait.h"
+#include "puppetri/motion/gestures.h"
+#include "puppetri/motion/jump.h"
 #include "puppetri/motion/own_movement.h"
 #include "times.h"
 
@@ -43,6 +46,18 @@ DurationRange declared_duration(const BoundCall& call) {
     }
     if (name == "idle" || name == "stand") {
         return exactly(standing_time(arguments.number("lasting")));
+    }
+    if (name == "jump") {
+        return exactly(whole_milliseconds(jump_duration_s(arguments.number("height"))));
+    }
+    const auto count = [&](const char* parameter, int most) {
+        return static_cast<int>(clamp(arguments.number(parameter), 1, most));
+    };
+    if (name == "wave" && arguments.get<TokenAttribute>("times") == nullptr) {
+        return exactly(whole_milliseconds(wave_duration_s(count("times", kMostWaves))));
+    }
+    if (name == "eat" && arguments.get<TokenAttribute>("bites") == nullptr) {
+        return exactly(whole_milliseconds(eat_duration_s(count("bites", kMostBites))));
     }
     return row;
 }

@@ -64,20 +64,59 @@ class Evaluator {
     Slots slots_;
 };
 
+template <class Key>
+Key key_of(const FormulaKey& from) {
+    Key key;
+    key.t_s = from.t_s;
+    key.interpolation = from.interpolation;
+    key.shape = from.shape;
+    key.easing = from.easing;
+    return key;
+}
+
 class FormulaSource final : public PoseSource {
  public:
-    FormulaSource(std::shared_ptr<const FormulaMovement> formula, std::vector<double> inputs)
-        : formula_(std::move(formula)), inputs_(std::move(inputs)) {}
+    FormulaSource(std::shared_ptr<const FormulaMovement> formula, std::vector<double> inputs,
+                  double duration_s)
+        : formula_(std::move(formula)), inputs_(std::move(inputs)), duration_s_(duration_s) {
+        std::vector<double> locals(formula_->locals.size());
+        Evaluator evaluator(*formula_, inputs_, locals);
+        evaluator.to(0);
+        for (const std::vector<FormulaKey>& keys : formula_->dof_keys) {
+            NumberTrack& track = numbers_.emplace_back();
+            for (const FormulaKey& k : keys) {
+                track.keys.push_back(key_of<NumberKey>(k));
+                track.keys.back().value = evaluator.value(k.value[0]);
+            }
+            close(track.keys);
+        }
+        for (const std::vector<FormulaKey>& keys : formula_->path_keys) {
+            VectorTrack& track = places_.emplace_back();
+            for (const FormulaKey& k : keys) {
+                track.keys.push_back(key_of<VectorKey>(k));
+                track.keys.back().value = {evaluator.value(k.value[0]), evaluator.value(k.value[1]),
+                                           evaluator.value(k.value[2])};
+            }
+            close(track.keys);
+        }
+    }
 
     void sample(double t_s, PoseFrame& frame) const override {
         static thread_local std::vector<double> locals;
         locals.resize(formula_->locals.size());
         Evaluator evaluator(*formula_, inputs_, locals);
         evaluator.to(t_s);
+        const bool loops = formula_->spec.loops;
         for (std::size_t i = 0; i < formula_->dofs.size(); ++i) {
-            frame.dofs[i] = evaluator.value(formula_->dofs[i]);
+            frame.dofs[i] = numbers_[i].keys.empty()
+                                ? evaluator.value(formula_->dofs[i])
+                                : motion::sample(numbers_[i], t_s, loops, duration_s_);
         }
         for (std::size_t i = 0; i < formula_->paths.size(); ++i) {
+            if (!places_[i].keys.empty()) {
+                frame.paths[i] = motion::sample(places_[i], t_s, loops, duration_s_);
+                continue;
+            }
             const auto& path = formula_->paths[i];
             frame.paths[i] = {evaluator.value(path[0]), evaluator.value(path[1]),
                               evaluator.value(path[2])};
@@ -85,8 +124,20 @@ class FormulaSource final : public PoseSource {
     }
 
  private:
+    // What loops ends where it began.
+    template <class Key>
+    void close(std::vector<Key>& keys) const {
+        if (formula_->spec.loops && !keys.empty() && keys.back().t_s < duration_s_) {
+            keys.push_back(keys.front());
+            keys.back().t_s = duration_s_;
+        }
+    }
+
     std::shared_ptr<const FormulaMovement> formula_;
     std::vector<double> inputs_;
+    double duration_s_ = 0;
+    std::vector<NumberTrack> numbers_;  // by DOF; without keys: a formula
+    std::vector<VectorTrack> places_;   // by path
 };
 
 // Where |x| is least in [a, b], by golden section.
@@ -201,7 +252,7 @@ MovementPtr FormulaMaker::make(const OwnCall& call) const {
     PosedSpec spec = formula_->spec;
     spec.duration_s = declared(call.arguments).shortest.seconds();
     auto source = std::make_shared<FormulaSource>(
-        formula_, inputs_of(call.arguments, &call.around, {1, 1, 1}));
+        formula_, inputs_of(call.arguments, &call.around, {1, 1, 1}), spec.duration_s);
     return make_posed(call.context, spec, std::move(source));
 }
 
@@ -211,6 +262,17 @@ Diagnostics FormulaMaker::check(const Arguments& arguments, const figure::DofSet
                                     [](const FormulaInput& i) { return i.coordinate >= 0; });
     PosedSpec spec = formula_->spec;
     spec.duration_s = takes(arguments).seconds;
+    for (const auto* tracks : {&formula_->dof_keys, &formula_->path_keys}) {
+        for (const std::vector<FormulaKey>& keys : *tracks) {
+            if (!keys.empty() && keys.back().t_s > spec.duration_s + 1e-9) {
+                list.push_back({Severity::kError, "key-after-end", keys.back().where,
+                                "movement " + spec.name + " at " + told_seconds(keys.back().t_s),
+                                "this key comes after the end, at " + told_seconds(spec.duration_s),
+                                "let it take longer, or move the key"});
+                return list;
+            }
+        }
+    }
     std::vector<double> locals(formula_->locals.size());
     for (const Vec3 stand_in : {Vec3{1, 1, 1}, Vec3{0.3, 0.2, -1}}) {
         const std::vector<double> inputs = inputs_of(arguments, nullptr, stand_in);
@@ -228,7 +290,7 @@ Diagnostics FormulaMaker::check(const Arguments& arguments, const figure::DofSet
             }
         }
         if (list.empty()) {
-            list = check_posed(dofs, spec, FormulaSource(formula_, inputs));
+            list = check_posed(dofs, spec, FormulaSource(formula_, inputs, spec.duration_s));
             for (Diagnostic& d : list) {
                 for (std::size_t i = 0; i < spec.dofs.size() && i < formula_->dof_where.size();
                      ++i) {

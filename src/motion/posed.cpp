@@ -71,6 +71,9 @@ class Posed final : public Movement {
         limbs = limbs_of(figure_, spec);
         duration = duration_of(context, spec.duration_s);
         pace_ = duration.ticks > 0 ? spec.duration_s / duration.seconds() : 1;
+        if (!spec.stretches) {
+            pace_ = std::fmax(pace_, 1);
+        }
         base_ = make_idle(context, {.limbs = limbs, .duration_s = spec.duration_s});
         find_drives();
         const Transform pelvis{about_y(heading_of(start_.pelvis.rotation_world)),
@@ -489,6 +492,7 @@ LimbSet limbs_of(const Figure& figure, const PosedSpec& spec) {
     for (const DrivenPath& path : spec.paths) {
         limbs = limbs.with(path.limb);
     }
+    limbs = both(limbs, spec.also);
     return limbs.has(Limb::kPelvis) || spec.travels ? both(limbs, kLowerBody) : limbs;
 }
 

@@ -11,10 +11,13 @@
 #include "puppetri/motion/ball_game.h"
 #include "puppetri/motion/gait.h"
 #include "puppetri/motion/gaze.h"
+#include "puppetri/motion/gestures.h"
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
+#include "puppetri/motion/jump.h"
 #include "puppetri/motion/look.h"
 #include "puppetri/motion/own_movement.h"
+#include "puppetri/motion/sitting.h"
 #include "puppetri/motion/turn.h"
 #include "times.h"
 
@@ -76,6 +79,7 @@ class Preparer {
     std::optional<double> elbow() const;
     void carry(bool stay);
     void own();
+    void whole(MovementPtr made);
 
     StepKind half_kind(Side transfer) const;
     LimbSet main_limbs();
@@ -334,10 +338,14 @@ void Preparer::catch_ball() {
     result_.movement = make_catch(context_, {.radius_m = radius(ball)});
 }
 
-// What hands hold they go on holding, whatever an own movement says about the arms.
 void Preparer::own() {
     MovementPtr made = call_.own->maker().make({arguments_, context_, around_, notes_});
     PUP_REQUIRE(made != nullptr);
+    whole(std::move(made));
+}
+
+// What hands hold they go on holding, whatever such a movement says about the arms.
+void Preparer::whole(MovementPtr made) {
     const bool carries = shared(made->limbs, kBothArms).bits != 0 && around_.holds.valid();
     if (carries) {
         note("hands-full", "the arms that it moves hold a prop: they go on carrying it",
@@ -507,6 +515,22 @@ Prepared Preparer::run() {
         point(name == "point");
     } else if (name == "look") {
         look();
+    } else if (name == "bow") {
+        whole(make_bow(context_, {.deep_rad = arguments_.number("deep")}));
+    } else if (name == "sit") {
+        whole(make_sit(context_, {.seat_height_m = arguments_.number("seat")}));
+    } else if (name == "stand_up") {
+        whole(make_stand_up(context_, {}));
+    } else if (name == "jump") {
+        whole(make_jump(context_, {.height_m = arguments_.number("height")}));
+    } else if (name == "wave") {
+        whole(make_wave(context_, {.side = arguments_.side("side"),
+                                   .times = static_cast<int>(
+                                       clamp(arguments_.number("times"), 1, kMostWaves))}));
+    } else if (name == "eat") {
+        whole(make_eat(context_, {.side = arguments_.side("side"),
+                                  .bites = static_cast<int>(
+                                      clamp(arguments_.number("bites"), 1, kMostBites))}));
     } else {
         PUP_REQUIRE(name == "swing");
         result_.movement = make_relax(context_, 1);

@@ -89,11 +89,16 @@ std::optional<ProgramIndex> FormulaCompiler::compiled(const Expr& value, const l
 }
 
 std::optional<ProgramIndex> FormulaCompiler::program(const lang::Expr& e, lang::Dimension wanted) {
+    return program_of(e, wanted, wanted);
+}
+
+std::optional<ProgramIndex> FormulaCompiler::program_of(const lang::Expr& e, lang::Dimension wanted,
+                                                        lang::Dimension other) {
     const auto value = number(e);
     if (!value) {
         return std::nullopt;
     }
-    if (!value->fits(wanted)) {
+    if (!value->fits(wanted) && !value->fits(other)) {
         const std::string unit(lang::example_unit(wanted));
         e_.error("wrong-unit", e.span,
                  element_ + " is " + lang::to_text(wanted) + ", and this is " +
@@ -216,6 +221,11 @@ std::optional<Formula> FormulaCompiler::name(const lang::Expr& e) {
             return std::nullopt;
         }
         if (steps.size() == 1) {
+            if (first == "t" && without_time_) {
+                e_.error("wrong-type", e.span, "the value of a key does not depend on the time",
+                         "write a formula without `at`, or more keys");
+                return std::nullopt;
+            }
             if (first == "t") {
                 return Formula{slot(FormulaSlot::kTime, 0), lang::dimension::kTime};
             }

@@ -45,7 +45,12 @@ class FormulaCompiler {
     std::optional<Formula3> point(const lang::Expr& e);
     // The same as programs, of the wanted dimension.
     std::optional<ProgramIndex> program(const lang::Expr& e, lang::Dimension wanted);
+    // Of the first dimension, or of the other where the formula gives that.
+    std::optional<ProgramIndex> program_of(const lang::Expr& e, lang::Dimension usual,
+                                           lang::Dimension other);
     std::optional<std::array<ProgramIndex, 3>> path(const lang::Expr& e);
+    // The values of keys do not depend on the time.
+    void without_time(bool without) { without_time_ = without; }
 
     static Expr slot(motion::FormulaSlot kind, std::uint32_t index) {
         return Expr::slot({static_cast<std::uint32_t>(kind), index}, {ValueKind::kReal});
@@ -80,6 +85,7 @@ class FormulaCompiler {
     std::map<std::string, std::pair<std::uint32_t, lang::Dimension>, std::less<>> locals_;
     std::vector<Guard> guards_;  // of the branch that is being compiled
     int depth_ = 0;
+    bool without_time_ = false;
 };
 
 }  // namespace puppetri::scene

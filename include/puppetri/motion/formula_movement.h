@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Movements by formula: the degrees of freedom of a figure, and the ways of its hands, feet and
-// pelvis, as expressions of the time. The scene compiles what its author wrote; here it is
-// evaluated, and looked at for poles before it ever plays.
+// Movements by formula and by keyframes: the degrees of freedom of a figure, and the ways of its
+// hands, feet and pelvis, each as an expression of the time or as keys whose values are expressions
+// of the arguments. The scene compiles what its author wrote; here it is evaluated, and looked at
+// for poles before it ever plays.
 #pragma once
 #include <array>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "puppetri/base/expr.h"
+#include "puppetri/motion/clip.h"
 #include "puppetri/motion/own_movement.h"
 #include "puppetri/motion/posed.h"
 
@@ -38,6 +40,16 @@ struct FormulaDanger {
     std::string what;  // "it divides by `t - 0.5 s`"
 };
 
+// A key of one DOF (then only value[0] counts) or of one path.
+struct FormulaKey {
+    double t_s = 0;
+    std::array<ProgramIndex, 3> value;
+    Interpolation interpolation = Interpolation::kCatmullRom;
+    KeyShape shape;
+    Easing easing;
+    SourceSpan where;
+};
+
 struct FormulaMovement {
     PosedSpec spec;  // duration_s is that of `takes` for a call
     Code code;
@@ -46,6 +58,8 @@ struct FormulaMovement {
     std::vector<ProgramIndex> locals;                // each may read those before it
     std::vector<ProgramIndex> dofs;                  // of spec.dofs
     std::vector<std::array<ProgramIndex, 3>> paths;  // of spec.paths
+    // By DOF and by path, ordered by time; where there are keys, the formula above is not valid.
+    std::vector<std::vector<FormulaKey>> dof_keys, path_keys;
     std::vector<FormulaDanger> dangers;
     std::vector<SourceSpan> dof_where, path_where;
 };
@@ -65,9 +79,9 @@ class FormulaMaker final : public MovementMaker {
     Takes takes(const Arguments& arguments) const;
 
     // All that is wrong with a call before anything moves: poles ("formula-pole"), values that are
-    // no numbers ("not-a-number"), values out of a DOF's range ("out-of-range", a warning). Inputs
-    // that are places of things are taken as at (1, 1, 1) m, once more at (0.3, 0.2, -1) m.
-    // Cost    about a millisecond.
+    // no numbers ("not-a-number"), keys after the end ("key-after-end"), values out of a DOF's
+    // range ("out-of-range", a warning). Inputs that are places of things are taken as at (1, 1, 1)
+    // m, once more at (0.3, 0.2, -1) m. Cost    about a millisecond.
     Diagnostics check(const Arguments& arguments, const figure::DofSet& dofs) const;
 
     const FormulaMovement& formula() const { return *formula_; }

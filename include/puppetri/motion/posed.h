@@ -54,6 +54,9 @@ struct PosedSpec {
     };
     std::vector<Event> events;  // within the duration
     double settle_s = 0.35;     // over which the state that was found fades
+    // A place that gives it more time than its duration: play slower, or rest at the end.
+    bool stretches = true;
+    LimbSet also = {};  // what else it drives: limbs that stand alive, unmoved by the source
 };
 
 // Numbers of one instant, in the order of the spec. Joints' rotations are parent_from_joint of the
