@@ -42,7 +42,7 @@ class Bow final : public PoseSource {
     double deep_, scale_, duration_s_;
 };
 
-constexpr double kWaveRise_s = 0.6, kWaveFall_s = 0.7, kWaveOnce_s = 0.5;
+constexpr double kWaveRise_s = 0.75, kWaveFall_s = 0.8, kWaveOnce_s = 0.55;
 
 class Wave final : public PoseSource {
  public:
@@ -64,7 +64,7 @@ class Wave final : public PoseSource {
     double duration_s_;
 };
 
-constexpr double kBite_s = 2.2, kAtMouth_s = 1.0;
+constexpr double kBite_s = 2.8, kAtMouth_s = 1.3;
 
 class Eat final : public PoseSource {
  public:
@@ -80,7 +80,7 @@ class Eat final : public PoseSource {
     }
     void sample(double t_s, PoseFrame& frame) const override {
         const double t = t_s - kBite_s * std::floor(t_s / kBite_s);
-        const double up = stays(t, 0.35, 0.6, 2.1, 0.75);
+        const double up = stays(t, 0.4, 0.8, 2.7, 1.0);
         // The way bends outward and ahead, as the elbow does.
         const double out = 4 * up * (1 - up);
         frame.paths[0] = lerp(plate_, mouth_, up) + Vec3{0.03 * s_, 0, 0.05} * out;
@@ -119,7 +119,8 @@ MovementPtr make_wave(const MotionContext& context, const WaveSpec& spec) {
                                    of(side, "left_shoulder.flex", "right_shoulder.flex"),
                                    of(side, "left_shoulder.twist", "right_shoulder.twist"),
                                    of(side, "left_elbow.flex", "right_elbow.flex"),
-                                   of(side, "left_wrist.side", "right_wrist.side")}};
+                                   of(side, "left_wrist.side", "right_wrist.side")},
+                          .also = kBothArms};
     return make_posed(context, posed, std::make_shared<Wave>(spec.times));
 }
 

@@ -6,6 +6,7 @@
 #include "puppetri/motion/jump.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "foot_path.h"
 #include "puppetri/base/elementary.h"
@@ -20,7 +21,11 @@ namespace puppetri::motion {
 namespace {
 
 constexpr double kCrouch_s = 0.62, kPush_s = 0.20, kGive_s = 0.26, kRise_s = 0.62;
-constexpr double kHeelUp_rad = radians(24), kToesDown_rad = radians(38);
+constexpr double kHeelUp_rad = radians(30), kToesDown_rad = radians(40);
+constexpr double kLongest = 0.985;  // part of a leg's length that the hips are above the ankle
+
+// The pitch of the feet when they leave and land; heels up.
+constexpr Motion1 kOff{-kHeelUp_rad, -5, 0}, kOn{-0.8 * kHeelUp_rad, 4.5, 0};
 
 double height_of(double height_m) { return clamp(height_m, 0.02, 0.6); }
 
@@ -39,9 +44,15 @@ class Jump final : public Movement {
         const double crouch = k * kCrouch_s;
         leaves_s_ = crouch + kPush_s;
         lands_s_ = leaves_s_ + flight;
-        plan_hips(height, crouch, lands_s_ + kGive_s, lands_s_ + kGive_s + k * kRise_s);
+        // A leg leaves the floor the more bent the faster the hips are.
+        for (double low = 0; low < 0.2; low += 0.02) {
+            plan_hips(height, low, crouch, lands_s_ + kGive_s, lands_s_ + kGive_s + k * kRise_s);
+            if (ankle_height(context, Side::kLeft).second) {
+                break;
+            }
+        }
         for (const Side side : {Side::kLeft, Side::kRight}) {
-            plan_foot(context, side, height);
+            plan_foot(context, side);
         }
         std::stable_sort(events.begin(), events.end(),
                          [](const MovementEvent& a, const MovementEvent& b) {
@@ -66,7 +77,7 @@ class Jump final : public Movement {
             Transform& hand = c.arms[i].chest_from_hand;
             const Vec3 shoulder = shoulder_chest(figure_, side);
             // Bent elbows while they swing.
-            const double shorter = 1 - 0.16 * std::fmin(1, std::fabs(arms_.at(t_s).position));
+            const double a = arms_.at(t_s).position, shorter = 1 - 0.16 * a * a / (a * a + 0.3);
             hand.translation = shoulder + rotate(swing, hand.translation - shoulder) * shorter;
             hand.rotation = normalized(swing * hand.rotation);
             c.legs[i] = feet_[static_cast<std::size_t>(i)].at(t_s);
@@ -75,14 +86,14 @@ class Jump final : public Movement {
     }
 
  private:
-    void plan_hips(double height, double crouch_s, double given_s, double up_s) {
+    void plan_hips(double height, double low, double crouch_s, double given_s, double up_s) {
         const double h = figure_.height_m / 1.75;
         const double v = std::sqrt(2 * kGravity_m_s2 * height);
-        const double deep = clamp(0.5 * height + 0.10, 0.12, 0.24) * h;
+        const double deep = clamp(0.5 * height + 0.10 + 0.5 * low, 0.12, 0.28) * h;
         lift_ = Curve1({{0, {}},
                         {crouch_s, {-deep, 0, 4}},
-                        {leaves_s_, {0, v, -kGravity_m_s2}},
-                        {lands_s_, {0, -v, -kGravity_m_s2}},
+                        {leaves_s_, {-low * h, v, -kGravity_m_s2}},
+                        {lands_s_, {-low * h, -v, -kGravity_m_s2}},
                         {given_s, {-0.8 * deep, 0, 4}},
                         {up_s, {}}});
         back_ = Curve1({{0, {}},
@@ -99,19 +110,46 @@ class Jump final : public Movement {
                         {given_s, {0.8 * lean, 0, 0}},
                         {up_s, {}}});
         arms_ = Curve1({{0, {}},
-                        {crouch_s, {-radians(38), 0, 0}},
-                        {leaves_s_ + 0.1, {radians(62), 0, 0}},
+                        {0.8 * crouch_s, {-radians(34), 0, 0}},
+                        {leaves_s_ + 0.14, {radians(56), 0, 0}},
                         {lands_s_ + 0.12, {radians(14), 0, 0}},
                         {up_s, {}}});
     }
 
-    void plan_foot(const MotionContext& context, Side side, double height) {
+    // The height of an ankle in the air, and whether the leg is never stretched: it is drawn in as
+    // far as that needs.
+    std::pair<Curve1, bool> ankle_height(const MotionContext& context, Side side) const {
+        const auto i = static_cast<std::size_t>(index_of(side));
+        const Footprint print = put_down(figure_, context, side).print;
+        const Motion3 from = ankle_on_print(figure_, side, print, kOff);
+        const Motion3 to = ankle_on_print(figure_, side, print, kOn);
+        const double middle = (leaves_s_ + lands_s_) / 2;
+        const double hip_y =
+            pelvis_over_feet(figure_, context.now).position_world.y + figure_.legs[i].hip_pelvis.y;
+        Curve1 curve;
+        for (double drawn_in = 0.04; drawn_in < 0.3; drawn_in += 0.01) {
+            const double top = hip_y + lift_.at(middle).position - (1 - drawn_in) * figure_.leg_m;
+            curve = Curve1({{leaves_s_, {from.position.y, from.velocity.y, from.acceleration.y}},
+                            {middle, {top, 0, -kGravity_m_s2}},
+                            {lands_s_, {to.position.y, to.velocity.y, to.acceleration.y}}});
+            double longest = 0;
+            for (int k = 0; k <= 40; ++k) {
+                const double t = leaves_s_ + (lands_s_ - leaves_s_) * k / 40;
+                longest = std::fmax(longest, hip_y + lift_.at(t).position - curve.at(t).position);
+            }
+            if (longest < kLongest * figure_.leg_m) {
+                return {std::move(curve), true};
+            }
+        }
+        return {std::move(curve), false};
+    }
+
+    void plan_foot(const MotionContext& context, Side side) {
         Landing landing = put_down(figure_, context, side);
         FootPath& foot = feet_[static_cast<std::size_t>(index_of(side))];
         foot = std::move(landing.path);
         // Heels up before the take-off, toes down in the air, the ball of the foot lands first.
-        const double up_s = 0.13, flight = lands_s_ - leaves_s_;
-        const Motion1 off{-kHeelUp_rad, -2.6, 0}, on{-0.75 * kHeelUp_rad, 2.4, 0};
+        const double up_s = 0.17, flight = lands_s_ - leaves_s_;
         std::vector<Key1> pitch;
         for (const Key1& key : foot.pitch().keys()) {
             if (key.t_s < leaves_s_ - up_s - 0.02) {
@@ -119,27 +157,24 @@ class Jump final : public Movement {
             }
         }
         pitch.push_back({leaves_s_ - up_s, {}});
-        pitch.push_back({leaves_s_, off});
+        pitch.push_back({leaves_s_, kOff});
         pitch.push_back({leaves_s_ + 0.5 * flight, {-kToesDown_rad, 0, 0}});
-        pitch.push_back({lands_s_, on});
-        pitch.push_back({lands_s_ + 0.11, {}});
+        pitch.push_back({lands_s_, kOn});
+        pitch.push_back({lands_s_ + 0.14, {}});
         foot.set_pitch(Curve1(std::move(pitch)));
-        const Motion3 from = ankle_on_print(figure_, side, landing.print, off);
-        const Motion3 to = ankle_on_print(figure_, side, landing.print, on);
-        const double top = std::fmax(from.position.y, to.position.y) + 0.8 * height;
+        const Motion3 from = ankle_on_print(figure_, side, landing.print, kOff);
+        const Motion3 to = ankle_on_print(figure_, side, landing.print, kOn);
         const double middle = (leaves_s_ + lands_s_) / 2;
         const auto straight = [&](double a, double va, double b, double vb) {
             return Curve1({{leaves_s_, {a, va, 0}}, {lands_s_, {b, vb, 0}}});
         };
         Curve3 ankle{straight(from.position.x, from.velocity.x, to.position.x, to.velocity.x),
-                     Curve1({{leaves_s_, {from.position.y, from.velocity.y, from.acceleration.y}},
-                             {middle, {top, 0, -kGravity_m_s2}},
-                             {lands_s_, {to.position.y, to.velocity.y, to.acceleration.y}}}),
+                     ankle_height(context, side).first,
                      straight(from.position.z, from.velocity.z, to.position.z, to.velocity.z)};
         const double yaw = landing.print.yaw_rad;
-        const Curve1 toes({{leaves_s_, {-off.position, -off.velocity, 0}},
+        const Curve1 toes({{leaves_s_, {-kOff.position, -kOff.velocity, 0}},
                            {middle, {radians(8), 0, 0}},
-                           {lands_s_, {-on.position, -on.velocity, 0}}});
+                           {lands_s_, {-kOn.position, -kOn.velocity, 0}}});
         foot.swing(leaves_s_, {}, std::move(ankle),
                    Curve1({{leaves_s_, {yaw, 0, 0}}, {lands_s_, {yaw, 0, 0}}}), toes);
         foot.stand(lands_s_, landing.print);

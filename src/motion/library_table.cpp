@@ -220,8 +220,8 @@ constexpr auto kTable = std::to_array<MovementSignature>({
     {.name = "eat",
      .parameters = kEat,
      .limbs = limbs_of({Limb::kBody, Limb::kLeftArm, Limb::kRightArm}),
-     .shortest = milliseconds(2200),
-     .longest = milliseconds(2'200'000),
+     .shortest = milliseconds(2800),
+     .longest = milliseconds(2'800'000),
      .doc = "takes something from before the belly to the mouth; who sits keeps sitting"},
     {.name = "face",
      .parameters = kFace,
@@ -378,7 +378,7 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .limbs = kArms,
      .as_argument = true,
      .shortest = milliseconds(1800),
-     .longest = milliseconds(51'300),
+     .longest = milliseconds(56'550),
      .doc = "raises one hand beside the head, waves it, and lowers it"},
 });
 

@@ -29,6 +29,8 @@ using figure::JointIndex;
 using figure::Pose;
 
 constexpr int kMostDofsOfJoint = 6;
+// What rests at the end rests as it was just before: a step there is no movement any more.
+constexpr double kBeforeEnd_s = 1e-9;
 
 // Reused by every posing movement of a thread; results never depend on what it holds.
 struct Scratch {
@@ -196,7 +198,7 @@ class Posed final : public Movement {
         const double t = t_s * pace_;
         return spec_.loops && spec_.duration_s > 0
                    ? t - spec_.duration_s * std::floor(t / spec_.duration_s)
-                   : std::fmin(t, spec_.duration_s);
+                   : clamp(t, 0, spec_.duration_s - kBeforeEnd_s);
     }
 
     // The movement's own controls and pose, without regard to what it found.

@@ -77,8 +77,8 @@ inline test::Measures measured(const Performed& p, const Scene& scene, std::uint
 // What every movement holds: limits, floor, and joins.
 inline void check_good(const test::Measures& m, const std::string& what) {
     const auto small = [&](const test::Worst& w, double most, const char* quantity) {
-        CHECK_MESSAGE(w.value <= most, what << ": " << quantity << " " << w.value << " at "
-                                            << w.at_s << " s, " << w.where);
+        CHECK_MESSAGE(w.value <= most, what << ": " << std::string(quantity) << " " << w.value
+                                            << " at " << w.at_s << " s, " << w.where);
     };
     small(m.limit_excess_deg, 0.01, "beyond a limit by degrees");
     small(m.slip_mm, 1, "slip mm");

@@ -306,3 +306,41 @@ TEST_CASE("wrong movements are told with place and remedy [hostile]") {
     CHECK(std::any_of(out.begin(), out.end(),
                       [](const Diagnostic& d) { return d.code == "out-of-range"; }));
 }
+
+TEST_CASE("keyframes pose what their keys say, by each interpolation [oracle]") {
+    const auto value = [](const char* interpolation, double t_s) {
+        const Scene scene = one(
+            std::string("keyframes m(me: actor, most = 60 deg) {\n takes 2 s\n ") + interpolation +
+                "\n at 0 s: me.left_elbow.flex = 20 deg, me.head.twist = 0 deg\n"
+                " at 1 s: me.left_elbow.flex = most\n"
+                " at 2 s: me.left_elbow.flex = 20 deg; me.head.twist = 10 deg\n}",
+            "m()");
+        const Performed p = performed(scene);
+        check_good(measured(p, scene), interpolation);
+        return dof_value(*p.performance, "left_elbow.flex", 1 + t_s) * 180 / kPi;
+    };
+    CHECK(value("interpolation linear", 1.0) == doctest::Approx(60).epsilon(1e-6));
+    CHECK(value("interpolation linear", 1.75) == doctest::Approx(30).epsilon(1e-6));
+    CHECK(value("interpolation step", 0.99) == doctest::Approx(20).epsilon(1e-6));
+    // Catmull-Rom: at the middle key the rate is that from end to end, 0; at the ends one-sided.
+    CHECK(value("interpolation catmull_rom", 1.0) == doctest::Approx(60).epsilon(1e-6));
+    CHECK(value("interpolation tcb(tension: 1)", 1.5) == doctest::Approx(40).epsilon(1e-6));
+    CHECK(value("interpolation bezier(0.5, 0, 0.5, 1)", 1.5) == doctest::Approx(40).epsilon(1e-4));
+    CHECK(value("interpolation ease", 1.5) == doctest::Approx(40).epsilon(1e-4));
+}
+
+TEST_CASE("wrong keyframes are told with place and remedy [hostile]") {
+    const auto keys = [](const char* body) {
+        return std::string("keyframes m(me: actor) {\n takes 1 s\n") + body + "\n}";
+    };
+    refuses(keys("at 2 s: me.head.flex = 1 deg"), "key-after-end");
+    refuses(keys("at -1 s: me.head.flex = 1 deg"), "negative-time");
+    refuses(keys("at 0 s: me.head.flex = 1 deg, me.head.flex = 2 deg"), "name-twice");
+    refuses(keys("at 0 s: me.head.flex = 1 s"), "wrong-unit");
+    refuses(keys("at 0 s: me.head.flex = t * 1 deg"), "wrong-type");
+    refuses(keys("at 0 s cubic: me.head.flex = 1 deg"), "unknown-name");
+    refuses(keys("at 0 s: me.head.flex"), "wrong-property");
+    refuses(keys("interpolation tcb(tension: 99)\nat 0 s: me.head.flex = 1 deg"), "out-of-range");
+    refuses(keys("me.head.flex = 1 deg\nat 0 s: me.head.flex = 1 deg"), "name-twice");
+    refuses(keys("at 0 s: you.head.flex = 1 deg"), "wrong-subject");
+}

@@ -20,7 +20,7 @@ struct WaveSpec {
 };
 inline constexpr int kMostWaves = 100;
 double wave_duration_s(int times);
-// Raises one hand beside the head, waves it, and lowers it. That arm alone.
+// Raises one hand beside the head, waves it, and lowers it; the other arm hangs.
 MovementPtr make_wave(const MotionContext& context, const WaveSpec& spec);
 
 struct EatSpec {
