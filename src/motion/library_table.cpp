@@ -146,11 +146,6 @@ constexpr Parameter kBow[] = {{.name = "deep",
                                .default_text = "40 deg",
                                .default_value = 40 * kDegree,
                                .doc = "how far the trunk bends"}};
-constexpr Parameter kHandParameter{.name = "side",
-                                   .types = types({kSide}),
-                                   .default_text = "right",
-                                   .default_value = 1,
-                                   .doc = "the hand"};
 constexpr Parameter kWave[] = {{.name = "times",
                                 .types = types({kInt}),
                                 .default_text = "3",

@@ -239,7 +239,8 @@ class Posed final : public Movement {
             const std::span<double> used(values.data(), dofs.size());
             figure::values_of(dofs, rest, {joint.rotation, rest.translation}, used);
             for (std::size_t k = 0; k < dofs.size(); ++k) {
-                if (drive.from[k] >= 0) {
+                if (drive.from[k] >= 0 &&
+                    std::isfinite(frame.dofs[static_cast<std::size_t>(drive.from[k])])) {
                     used[k] = clamp(frame.dofs[static_cast<std::size_t>(drive.from[k])], dofs[k].lo,
                                     dofs[k].hi);
                 }

@@ -353,6 +353,7 @@ class Elaboration {
     std::map<std::string, lang::Span> cast_where_;
     std::map<NodeKey, std::uint32_t> enumerations_;
     std::map<NodeKey, OwnDefinition> own_movements_;  // by block
+    std::map<std::string, OwnDefinition, std::less<>> host_movements_;
 };
 
 // Says for a while what is being looked at, for messages.

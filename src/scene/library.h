@@ -11,6 +11,7 @@
 
 #include "puppetri/base/diagnostic.h"
 #include "puppetri/lang/syntax.h"
+#include "puppetri/motion/own_movement.h"
 #include "puppetri/scene/file_source.h"
 
 namespace puppetri::scene {
@@ -30,9 +31,10 @@ struct Library {
     std::deque<lang::File> files;  // by number, as in lang::Span::file; addresses stay
     std::vector<std::map<std::string, Declaration>> visible;  // by file
     std::vector<std::map<std::string, std::string>>
-        texts;                // by file: of its event files, by the path as written
-    Diagnostics diagnostics;  // of reading and parsing
-    bool readable = true;     // all files are there and have been parsed without errors
+        texts;  // by file: of its event files, by the path as written
+    std::vector<motion::OwnMovementPtr> movements;  // of the embedding program
+    Diagnostics diagnostics;                        // of reading and parsing
+    bool readable = true;  // all files are there and have been parsed without errors
 
     SourceSpan where(lang::Span span) const {
         return span.file < files.size() ? files[span.file].where(span) : SourceSpan{};

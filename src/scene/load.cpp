@@ -140,9 +140,11 @@ bool told_already(const Diagnostics& list, const Diagnostic& d) {
 }
 
 // `also_unused`: nets that nobody instantiates are tried alone.
-Loaded load_all(FileSource& files, const std::string& path, bool also_unused) {
+Loaded load_all(FileSource& files, const std::string& path,
+                std::span<const motion::OwnMovementPtr> movements, bool also_unused) {
     Loaded out;
     Library library = load_library(files, path);
+    library.movements.assign(movements.begin(), movements.end());
     out.diagnostics = std::move(library.diagnostics);
     if (!library.readable) {
         sort_by_position(out.diagnostics, library);
@@ -203,16 +205,18 @@ Loaded load_all(FileSource& files, const std::string& path, bool also_unused) {
 
 }  // namespace
 
-Checked<Scene> load(FileSource& files, const std::string& path) {
-    Loaded loaded = load_all(files, path, false);
+Checked<Scene> load(FileSource& files, const std::string& path,
+                    std::span<const motion::OwnMovementPtr> movements) {
+    Loaded loaded = load_all(files, path, movements, false);
     if (!loaded.scene) {
         return Unexpected(std::move(loaded.diagnostics));
     }
     return std::move(*loaded.scene);
 }
 
-Diagnostics check(FileSource& files, const std::string& path) {
-    return load_all(files, path, true).diagnostics;
+Diagnostics check(FileSource& files, const std::string& path,
+                  std::span<const motion::OwnMovementPtr> movements) {
+    return load_all(files, path, movements, true).diagnostics;
 }
 
 }  // namespace puppetri::scene

@@ -603,6 +603,9 @@ std::vector<std::string> Elaboration::own_movement_names(std::uint32_t file) con
             names.push_back(text);
         }
     }
+    for (const motion::OwnMovementPtr& host : library_.movements) {
+        names.emplace_back(host->signature().name);
+    }
     return names;
 }
 
@@ -611,10 +614,17 @@ const OwnDefinition* Elaboration::own_movement(std::string_view name, std::uint3
         return nullptr;
     }
     const auto found = library_.visible[file].find(std::string(name));
-    if (found == library_.visible[file].end() || found->second.block == nullptr) {
-        return nullptr;
+    if (found != library_.visible[file].end()) {
+        return found->second.block != nullptr ? &define_movement(*found->second.block) : nullptr;
     }
-    return &define_movement(*found->second.block);
+    for (const motion::OwnMovementPtr& host : library_.movements) {
+        if (host->signature().name == name) {
+            OwnDefinition& definition = host_movements_[std::string(name)];
+            definition.movement = host;
+            return &definition;
+        }
+    }
+    return nullptr;
 }
 
 const OwnDefinition& Elaboration::define_movement(const lang::Block& block) {

@@ -6,12 +6,14 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
 #include "puppetri/base/frame_rate.h"
 #include "puppetri/base/time.h"
+#include "puppetri/motion/own_movement.h"
 #include "puppetri/net/net.h"
 #include "puppetri/scene/file_source.h"
 #include "puppetri/stage/stage.h"
@@ -56,11 +58,16 @@ struct Scene {
 // Reads a scene and all that it imports.
 // Fails   with every defect of every file, in order of file and position; nothing half-loaded is
 // given.
-Checked<Scene> load(FileSource& files, const std::string& path);
+//
+// `movements` of the program that embeds this (motion/host_movement.h) may be called by their names
+// like those of the library; what a file itself defines comes first.
+Checked<Scene> load(FileSource& files, const std::string& path,
+                    std::span<const motion::OwnMovementPtr> movements = {});
 
 // Looks for defects only. A file without a scene line is a library of nets: each is tried with
 // stand-ins for its parameters; so is each net of a scene that nobody uses. Gives   errors,
 // warnings and notes in order of file and position.
-Diagnostics check(FileSource& files, const std::string& path);
+Diagnostics check(FileSource& files, const std::string& path,
+                  std::span<const motion::OwnMovementPtr> movements = {});
 
 }  // namespace puppetri::scene

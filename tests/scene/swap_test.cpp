@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// The papers' point: the technique of a movement is chosen without touching the net. One net, the
+// greeting of one place made by six techniques: the log stays what it is, and every performance
+// joins.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "measured.h"
+#include "puppetri/base/elementary.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/host_movement.h"
+
+using namespace puppetri;
+using namespace puppetri::scene;
+
+namespace {
+
+// Two figures that greet each other and walk on. `greet` is all that changes.
+const char* const kNet = R"(language 1
+scene "A greeting"
+frames 24 per second, until 16 s
+seed 3
+
+cast {
+  ana: mannequin { at (-1, 0, 0) m, facing 90 deg }
+  rui: mannequin { at (1, 0, 0) m, facing -90 deg }
+}
+
+net meeting(me: actor, other: actor) {
+  place coming  does me.idle(lasting: 1 .. 1 s)
+}
+
+place waits   does ana.idle(lasting: 1 s)     takes 1 .. 2 s  tokens 1
+place greets  does ana.GREET                  takes 2400 ms
+place answers does rui.bow()                  takes 2 s
+place idles   does rui.idle()                 takes 1 s       tokens 1
+place goes    does ana.walk(steps: 2)         takes 2 s
+place rests   does ana.idle(lasting: 1 s)
+
+meet:   waits -> greets
+answer: greets + idles -> goes + answers
+on:     goes -> rests
+done:   answers -> idles
+again:  rests -> waits
+
+rule greets_once greets leads to answers
+)";
+
+std::string net_with(const std::string& greet) {
+    std::string text = kNet;
+    const std::size_t unused = text.find("net meeting"), end = text.find("}\n\n", unused) + 3;
+    text.erase(unused, end - unused);
+    text.replace(text.find("GREET"), 5, greet);
+    return text;
+}
+
+struct Taken {
+    std::uint64_t log_hash = 0;
+    Vec3 hand;  // of ana, in the middle of the greeting
+};
+
+Taken take(const std::string& greet, const std::string& definitions,
+           std::span<const motion::OwnMovementPtr> host = {}) {
+    MemoryFiles files;
+    files.add("scene.pup", net_with(greet) + definitions);
+    const Scene scene = must(load(files, "scene.pup", host));
+    const Performed p = performed(scene);
+    check_good(measured(p, scene, 0), greet);
+    Taken out{p.log_hash, {}};
+    for (const stage::ScoreEntry& row : p.performance->score()) {
+        if (row.place == "greets") {
+            figure::Pose pose;
+            p.performance->pose({0}, row.start + SimTime{kTicksPerSecond * 12 / 10}, pose);
+            const figure::Skeleton& skeleton = *p.performance->actors()[0].skeleton;
+            std::vector<Transform> world(skeleton.joints.size());
+            to_model_space(skeleton, pose, world);
+            out.hand = world[skeleton.find("rightHand").value].translation;
+            break;
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("a net never sees how its movements are made: six techniques, one log [agree]") {
+    // Inverse kinematics.
+    const Taken reach = take("reach((0, 1.3, 0.2) m)", "");
+    // The library.
+    const Taken wave = take("wave()", "");
+    // Keyframes.
+    const Taken keys = take("hail()", R"(
+keyframes hail(me: actor) {
+  takes 2.4 s
+  at 0 s:   me.right_shoulder.side = 5 deg, me.right_elbow.flex = 15 deg
+  at 1 s:   me.right_shoulder.side = 80 deg, me.right_elbow.flex = 70 deg
+  at 1.5 s: me.right_shoulder.side = 80 deg, me.right_elbow.flex = 40 deg
+  at 2.4 s: me.right_shoulder.side = 5 deg, me.right_elbow.flex = 15 deg
+}
+)");
+    // A formula over degrees of freedom, and one over the way of the hand.
+    const Taken formula = take("hail(70 deg)", R"(
+movement hail(me: actor, up: angle) {
+  takes 2.4 s
+  rise = sin(pi*t/2.4 s)^2
+  me.right_shoulder.side = up * rise
+  me.right_elbow.flex = (15 deg + 60 deg*rise) + 10 deg*rise*sin(9*t/1 s)
+}
+)");
+    const Taken path = take("hail()", R"(
+movement hail(me: actor) {
+  takes 2.4 s
+  rise = sin(pi*t/2.4 s)^2
+  me.right_hand.position = (-0.25, -0.3, 0.1) m + rise*(-0.1, 0.5, 0.25) m in chest
+}
+)");
+    // A callback.
+    const motion::OwnMovementPtr host[] = {motion::make_host_movement(
+        {.signature = {.name = "hail", .parameters = {motion::angle_parameter("up", radians(60))}},
+         .spec = {.duration_s = 2.4, .dofs = {"right_shoulder.side", "right_elbow.flex"}},
+         .pose = [](double t_s, const motion::HostArguments& with, motion::PoseFrame& frame) {
+             const double rise = puppetri::sin(kPi * t_s / 2.4) * puppetri::sin(kPi * t_s / 2.4);
+             frame.dofs[0] = with.number("up") * rise;
+             frame.dofs[1] = radians(15) + radians(80) * rise;
+         }})};
+    const Taken callback = take("hail(up: 75 deg)", "", host);
+
+    const std::uint64_t log = reach.log_hash;
+    CHECK(wave.log_hash == log);
+    CHECK(keys.log_hash == log);
+    CHECK(formula.log_hash == log);
+    CHECK(path.log_hash == log);
+    CHECK(callback.log_hash == log);
+    // They are different movements.
+    const Taken* all[] = {&reach, &wave, &keys, &formula, &path, &callback};
+    for (std::size_t i = 0; i < std::size(all); ++i) {
+        for (std::size_t k = i + 1; k < std::size(all); ++k) {
+            CHECK(length(all[i]->hand - all[k]->hand) > 0.01);
+        }
+    }
+}
+
+TEST_CASE("a callback has typed parameters, and its wrong calls are told as all others [unit]") {
+    const motion::OwnMovementPtr host[] = {motion::make_host_movement(
+        {.signature = {.name = "hail",
+                       .parameters = {motion::angle_parameter("up", 1),
+                                      motion::prop_parameter("what")}},
+         .spec = {.duration_s = 1, .dofs = {"head.flex"}},
+         .pose = [](double, const motion::HostArguments& with, motion::PoseFrame& frame) {
+             frame.dofs[0] = 0.1 * with.place("what").y;
+         }})};
+    const auto tell = [&](const std::string& call) {
+        MemoryFiles files;
+        files.add("scene.pup",
+                  "language 1\nscene \"s\"\nuntil 3 s\ncast {\n ana: mannequin\n ball: sphere { at "
+                  "(0, 1, 1) m }\n}\nplace p does ana." +
+                      call + " tokens 1\nend { p }\n");
+        const auto scene = load(files, "scene.pup", host);
+        return scene ? std::string() : scene.error().front().code;
+    };
+    CHECK(tell("hail(what: ball)") == "");
+    CHECK(tell("hail()") == "missing-argument");
+    CHECK(tell("hail(2 s, ball)") == "wrong-unit");
+    CHECK(tell("hale(what: ball)") == "unknown-name");
+}
