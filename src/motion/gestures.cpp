@@ -53,9 +53,9 @@ class Wave final : public PoseSource {
             stays(t_s, 0.4 * kWaveRise_s, 0.5, duration_s_ - 0.4 * kWaveFall_s, 0.5);
         const double swing = waving * puppetri::sin(2 * kPi * (t_s - kWaveRise_s) / kWaveOnce_s);
         // The upper arm goes up and out, the forearm stands; it swings about the elbow.
-        frame.dofs[0] = up * radians(74) + radians(4);
-        frame.dofs[1] = up * radians(24) + radians(6);
-        frame.dofs[2] = up * (radians(-88) + radians(20) * swing);
+        frame.dofs[0] = up * radians(70) + radians(4);
+        frame.dofs[1] = up * radians(18) + radians(6);
+        frame.dofs[2] = up * (radians(-70) + radians(18) * swing);
         frame.dofs[3] = up * radians(96) + radians(18);
         frame.dofs[4] = up * radians(6) * swing;
     }

@@ -141,6 +141,13 @@ constexpr Parameter kThrow[] = {kBallParameter,
                                  .types = types({kActor, kPoint}),
                                  .doc = "who will catch it, or where it lands"}};
 constexpr Parameter kCatch[] = {kBallParameter};
+constexpr Parameter kPickUp[] = {
+    {.name = "ball", .types = types({kProp}), .doc = "what lies on the floor before its feet"}};
+constexpr Parameter kHandOver[] = {
+    kBallParameter,
+    {.name = "to", .types = types({kActor}), .doc = "who stands before it with free hands"}};
+constexpr Parameter kHug[] = {
+    {.name = "who", .types = types({kActor}), .doc = "who stands close before it"}};
 constexpr Parameter kBow[] = {{.name = "deep",
                                .types = types({kAngle}),
                                .default_text = "40 deg",
@@ -238,6 +245,12 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .shortest = milliseconds(417),
      .longest = milliseconds(417),
      .doc = "a step from standing, or into standing"},
+    {.name = "hand_over",
+     .parameters = kHandOver,
+     .limbs = kWhole,
+     .shortest = milliseconds(1900),
+     .longest = milliseconds(1900),
+     .doc = "holds a ball out to somebody, who takes it with both hands"},
     {.name = "hold",
      .parameters = kHold,
      .limbs = kArms,
@@ -245,6 +258,12 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .shortest = milliseconds(1000),
      .longest = milliseconds(1000),
      .doc = "keeps a ball where the hands have it now"},
+    {.name = "hug",
+     .parameters = kHug,
+     .limbs = kWhole,
+     .shortest = milliseconds(3200),
+     .longest = milliseconds(3200),
+     .doc = "embraces somebody who stands close before it"},
     {.name = "idle",
      .parameters = kFor,
      .limbs = kWhole,
@@ -264,6 +283,12 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .shortest = milliseconds(600),
      .longest = milliseconds(600),
      .doc = "looks at something, with trunk, neck and head"},
+    {.name = "pick_up",
+     .parameters = kPickUp,
+     .limbs = kWhole,
+     .shortest = milliseconds(2400),
+     .longest = milliseconds(2400),
+     .doc = "takes a ball off the floor with both hands, and comes up with it"},
     {.name = "point",
      .parameters = kPointing,
      .limbs = kArms,

@@ -2,6 +2,7 @@
 // The functions behind the table of movements.
 #include "puppetri/motion/prepare.h"
 
+#include <algorithm>
 #include <string>
 
 #include "compose.h"
@@ -13,6 +14,8 @@
 #include "puppetri/motion/gaze.h"
 #include "puppetri/motion/gestures.h"
 #include "puppetri/motion/grip.h"
+#include "puppetri/motion/handling.h"
+#include "puppetri/motion/hug.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/jump.h"
 #include "puppetri/motion/look.h"
@@ -80,6 +83,10 @@ class Preparer {
     void carry(bool stay);
     void own();
     void whole(MovementPtr made);
+    void stand_for(double own_s);
+    void pick_up();
+    void hand_over();
+    void hug();
 
     StepKind half_kind(Side transfer) const;
     LimbSet main_limbs();
@@ -356,6 +363,73 @@ void Preparer::whole(MovementPtr made) {
     finish(std::move(made));
 }
 
+void Preparer::pick_up() {
+    const PropIndex ball = result_.prop = arguments_.prop("ball");
+    result_.gaze = {.kind = GazeKind::kProp, .prop = ball};
+    const PropState& state = around_.props[ball.value];
+    if (around_.holds.valid() || state.held_by.valid()) {
+        note("hands-full", "it picks up what somebody holds, or with hands that hold something",
+             "let the prop lie, and let the hands be free");
+        stand_for(PickUpSpec{}.duration_s);
+        return;
+    }
+    PickUp made =
+        make_pick_up(context_, {.radius_m = state.radius_m, .ball_world = state.position_world});
+    result_.movement = std::move(made.movement);
+    if (made.reaches) {
+        result_.grasps_after = made.grasps_after;
+    } else {
+        note("out-of-reach", "the prop lies too far off: the hands close on air",
+             "let it walk there first, and face the prop");
+    }
+}
+
+void Preparer::hand_over() {
+    const PropIndex ball = result_.prop = arguments_.prop("ball");
+    const auto* to = arguments_.get<ActorIndex>("to");
+    PUP_REQUIRE(to != nullptr);
+    result_.gaze = {.kind = GazeKind::kActor, .actor = *to};
+    if (!holds(ball) || *to == around_.me) {
+        note("not-held", "it hands over what its hands do not hold, or to itself",
+             "let it catch or pick up the prop first");
+        stand_for(GiveSpec{}.duration_s);
+        return;
+    }
+    const ActorState& other_actor = around_.actors[to->value];
+    const HandOver meeting =
+        meeting_of(context_.figure, context_.now, *other_actor.figure, other_actor.controls);
+    const bool busy = std::any_of(around_.props.begin(), around_.props.end(),
+                                  [&](const PropState& p) { return p.held_by == *to; });
+    if (!meeting.near || busy) {
+        note("out-of-reach", "the other stands too far off or too near, or its hands are full",
+             "let them stand about 0.9 m apart, facing each other");
+        stand_for(GiveSpec{}.duration_s);
+        return;
+    }
+    result_.movement =
+        make_give(context_, {.radius_m = radius(ball), .meeting_world = meeting.meeting_world});
+    result_.grasps_after = to_time(kHandOver_s);
+    result_.gives_to = *to;
+    result_.meeting_world = meeting.meeting_world;
+}
+
+void Preparer::hug() {
+    const auto* who = arguments_.get<ActorIndex>("who");
+    PUP_REQUIRE(who != nullptr);
+    const ActorState& other_actor = around_.actors[who->value];
+    Hug made = make_hug(context_, {*other_actor.figure, other_actor.controls});
+    if (*who == around_.me || !made.near) {
+        note("out-of-reach", "nobody stands close enough before it to be embraced",
+             "let them stand about 0.4 m apart, facing each other");
+        stand_for(kHug_s);
+        return;
+    }
+    whole(std::move(made.movement));
+}
+
+// Nothing else can be done: alive, with whatever the hands hold.
+void Preparer::stand_for(double own_s) { whole(make_idle(context_, {.duration_s = own_s})); }
+
 void Preparer::leg(bool support) {
     const bool left = call_.subject.limb == Limb::kLeftLeg;
     const Side me = left ? Side::kLeft : Side::kRight;
@@ -515,6 +589,12 @@ Prepared Preparer::run() {
         point(name == "point");
     } else if (name == "look") {
         look();
+    } else if (name == "pick_up") {
+        pick_up();
+    } else if (name == "hand_over") {
+        hand_over();
+    } else if (name == "hug") {
+        hug();
     } else if (name == "bow") {
         whole(make_bow(context_, {.deep_rad = arguments_.number("deep")}));
     } else if (name == "sit") {

@@ -105,6 +105,16 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
         return std::nullopt;
     }
     const SubjectKind kind = out.subject.kind;
+    if (const MovementTerm* given = given_movement(call, scope)) {
+        if (kind != SubjectKind::kActor) {
+            error("wrong-subject", who.span, "only an actor does a movement that is a parameter",
+                  "name an actor");
+            return std::nullopt;
+        }
+        motion::BoundCall bound = given->call;
+        bound.subject = out.subject;
+        return bound;
+    }
     const MovementSignature* signature = motion::find_movement(name.text, kind);
     const OwnDefinition* own =
         signature == nullptr ? own_movement(name.text, call.span.file) : nullptr;
@@ -161,10 +171,39 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
     return out;
 }
 
+// `does me.greet()` in a net with the parameter `greet: movement`: what was given there.
+const MovementTerm* Elaboration::given_movement(const lang::Expr& call, const Scope& scope) {
+    const Instance& instance = instances_[scope.instance];
+    if (instance.net == nullptr) {
+        return nullptr;
+    }
+    const auto& parameters = instance.net->parameters;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        if (parameters[i].name.text != call.path.steps.back().text) {
+            continue;
+        }
+        parameter_value(scope.instance, i);
+        const auto* movement = std::get_if<MovementTerm>(&instance.values[i].second);
+        if (movement != nullptr && !call.args.empty()) {
+            error("too-many-arguments", call.args.front().value.span,
+                  "the arguments of a movement that is a parameter are given with it",
+                  "write `" + parameters[i].name.text + "()` here");
+        }
+        return movement;
+    }
+    return nullptr;
+}
+
 // In a net that is checked alone nobody moves yet; but the movement's name can be wrong already.
 void Elaboration::check_stand_in_call(const lang::Expr& call, const Scope& scope) {
     const std::string& name = call.path.steps.back().text;
     std::vector<std::string> known = own_movement_names(call.span.file);
+    const Instance& instance = instances_[scope.instance];
+    if (instance.net != nullptr &&
+        std::any_of(instance.net->parameters.begin(), instance.net->parameters.end(),
+                    [&](const lang::Parameter& p) { return p.name.text == name; })) {
+        return;  // whoever uses the net says what it is
+    }
     if (const OwnDefinition* own = own_movement(name, call.span.file)) {
         if (own->movement != nullptr) {
             motion::BoundCall ignored;

@@ -293,6 +293,7 @@ class Elaboration {
     std::optional<motion::BoundCall> bind_call(const lang::Expr& call, const Scope& scope);
     void bind_arguments(const lang::Expr& call, const motion::MovementSignature& signature,
                         const Scope& scope, motion::BoundCall& out);
+    const MovementTerm* given_movement(const lang::Expr& call, const Scope& scope);
     void check_stand_in_call(const lang::Expr& call, const Scope& scope);
     std::optional<motion::ArgumentValue> bind_argument(const lang::Expr& value,
                                                        const motion::Parameter& parameter,

@@ -11,7 +11,8 @@ namespace {
 const char* const kPhases[] = {"free", "support", "swing"};
 const char* const kHolders[] = {"hands", "left_hand", "right_hand"};
 // What movements tell while they run (motion::MovementEvent).
-const char* const kMovementEvents[] = {"catch", "foot_off", "foot_strike", "release"};
+const char* const kMovementEvents[] = {"bite",  "catch",     "foot_off", "foot_strike",
+                                       "grasp", "hand_over", "release"};
 
 template <std::size_t N>
 bool is_one_of(const char* const (&list)[N], std::string_view name) {

@@ -3,6 +3,7 @@
 // prop begins to fly.
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/ball_game.h"
+#include "puppetri/motion/handling.h"
 #include "puppetri/motion/library.h"
 #include "puppetri/motion/turn.h"
 #include "stage_data.h"
@@ -78,6 +79,17 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
                    .actor = activity.actor,
                    .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation)});
     }
+    if (prepared.grasps_after.ticks >= 0) {
+        const bool gives = prepared.gives_to.valid();
+        const Grasp grasp{now + prepared.grasps_after, number,
+                          gives ? prepared.gives_to : activity.actor, prepared.prop};
+        grasps.insert(std::upper_bound(grasps.begin(), grasps.end(), grasp,
+                                       [](const Grasp& a, const Grasp& b) { return a.at < b.at; }),
+                      grasp);
+        if (gives) {
+            receive_from_hands(grasp, prepared.meeting_world);
+        }
+    }
     if (prepared.releases_prop) {
         activity.releases = prepared.prop;
         const Release release{now + activity.movement->duration, number};
@@ -91,6 +103,20 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
     row.limbs = limbs;
     row.prop = prepared.prop.valid() ? play.cast.props[prepared.prop.value].name : "";
     return activity.movement->duration;
+}
+
+// Who is given a ball takes it, whatever trunk and legs do meanwhile.
+void Stage::Data::receive_from_hands(const Grasp& grasp, Vec3 meeting_world) {
+    const std::uint32_t owner =
+        take.actors[grasp.actor.value].timeline.in_charge(Limb::kLeftArm, now).owner;
+    constexpr double kRoll_rad = 0.66;  // between the hands of the other
+    take_limbs(grasp.actor, motion::kBothArms,
+               motion::make_take(context_of(grasp.actor, now, SimTime{-1}),
+                                 {.radius_m = take.radius(grasp.prop),
+                                  .ball_world = meeting_world,
+                                  .grasps_s = (grasp.at - now).seconds(),
+                                  .roll_rad = kRoll_rad}),
+               owner);
 }
 
 // No leg will be off the floor from now on.

@@ -165,7 +165,8 @@ std::unique_ptr<const Performance> Stage::finish(SimTime end) {
             if (at > last) {
                 continue;
             }
-            const bool of_prop = event.name == "release" || event.name == "catch";
+            const bool of_prop = event.name == "release" || event.name == "catch" ||
+                                 event.name == "grasp" || event.name == "hand_over";
             take.events.push_back(
                 {at, event.name, take.score[a.row].actor,
                  of_prop ? std::string() : std::string(motion::name_of(event.limb)),

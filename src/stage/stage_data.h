@@ -61,6 +61,14 @@ struct Stage::Data {
         std::uint32_t activity;
     };
     std::vector<Release> releases;
+    // Hands that close on a prop in the middle of a movement: ordered by time.
+    struct Grasp {
+        SimTime at;
+        std::uint32_t activity;
+        ActorIndex actor;
+        PropIndex prop;
+    };
+    std::vector<Grasp> grasps;
 
     // Per actor, for the surroundings.
     struct Waiting {
@@ -216,7 +224,34 @@ struct Stage::Data {
             let_go(releases.front());
             releases.erase(releases.begin());
         }
+        while (!grasps.empty() && grasps.front().at < at) {
+            close_hands(grasps.front());
+            grasps.erase(grasps.begin());
+        }
         now = at;
+    }
+
+    // Unless the movement was cut before, or the hands are elsewhere.
+    void close_hands(const Grasp& grasp) {
+        constexpr double kNear_m = 0.05;
+        const Activity& activity = activities[grasp.activity];
+        if (activity.cut && activity.left < grasp.at) {
+            return;
+        }
+        const Transform prop = take.world_from_prop(grasp.prop, grasp.at, true);
+        const Transform hands = take.between_hands(grasp.actor, take.radius(grasp.prop), grasp.at);
+        const Hold& hold = take.props[grasp.prop.value].at(grasp.at);
+        const bool other = hold.kind == Holding::kHands && hold.actor != activity.actor;
+        if (other || length(prop.translation - hands.translation) > kNear_m) {
+            warn(activity.action, "out-of-reach", "the hands close on air: the prop is not there",
+                 "let nobody else move it, or the one who takes it, meanwhile");
+            return;
+        }
+        take.props[grasp.prop.value].take(
+            {.from = grasp.at,
+             .kind = Holding::kHands,
+             .actor = grasp.actor,
+             .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation)});
     }
 
     // Limbs that were cut and that nobody took at that instant come to rest.
@@ -357,6 +392,7 @@ struct Stage::Data {
     SimTime begin_flight(std::uint32_t number, const motion::BoundCall& call, SimTime duration);
     void attend(ActorIndex thrower, const motion::BoundCall& call);
     void receive(ActorIndex catcher, PropIndex prop, const motion::Flight& flight);
+    void receive_from_hands(const Grasp& grasp, Vec3 meeting_world);
     bool planted(ActorIndex actor) const;
 };
 

@@ -140,9 +140,9 @@ Swings swings_of(const BoundCall& call, bool calm) {
         const bool right = pelvis || limbs.has(Limb::kRightLeg);
         return {left, right, left && right};
     }
-    if (is_one_of(m,
-                  {"support", "idle", "stand", "carry", "hold", "reach", "swing", "swing_forward",
-                   "swing_backward", "bow", "eat", "sit", "stand_up", "wave"})) {
+    if (is_one_of(m, {"support", "idle", "stand", "carry", "hold", "reach", "swing",
+                      "swing_forward", "swing_backward", "bow", "eat", "hand_over", "hug",
+                      "pick_up", "sit", "stand_up", "wave"})) {
         return {};
     }
     return anything;

@@ -51,8 +51,13 @@ struct Gaze {
 
 struct Prepared {
     MovementPtr movement = {};
-    PropIndex prop = {};                        // named by the call, for the score
-    bool takes_prop = false;                    // from its start both hands hold `prop` (catch)
+    PropIndex prop = {};      // named by the call, for the score
+    bool takes_prop = false;  // from its start both hands hold `prop` (catch)
+    // So long after its start both hands of `gives_to` (of itself where that is none) hold `prop`;
+    // negative: never. Who is given something takes it at `meeting_world`.
+    SimTime grasps_after{-1};
+    ActorIndex gives_to = {};
+    Vec3 meeting_world = {};
     bool releases_prop = false;                 // at its end the hands let `prop` go (throw)
     std::optional<Vec3> catches_at_world = {};  // it waits there with open hands for `prop` (ready)
     Gaze gaze = {};

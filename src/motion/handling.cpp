@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// Hands on a ball that rests in the world until it is held: more and more of its place is then that
+// before the belly.
+#include "puppetri/motion/handling.h"
+
+#include <algorithm>
+
+#include "arm_state.h"
+#include "compose.h"
+#include "living.h"
+#include "puppetri/math/rotation.h"
+#include "puppetri/motion/arms.h"
+#include "puppetri/motion/grip.h"
+#include "puppetri/motion/idle.h"
+#include "puppetri/motion/posed.h"
+
+namespace puppetri::motion {
+namespace {
+
+constexpr double kOpen_m = 0.07;  // palms from the ball before they close
+constexpr double kGrasp = 0.45;   // part of a picking up until the hands have it
+constexpr double kRoll_rad = radians(38);
+
+// How deep the body goes, and how it bends: 1 is for a ball on the floor.
+struct Bend {
+    double hips_rad = radians(46), spine_rad = radians(22), chest_rad = radians(16);
+    Vec3 pelvis{0, -0.42, -0.17};  // of a figure of 1.75 m
+
+    Controls applied(const figure::Figure& figure, Controls c, double part) const {
+        const double k = figure.height_m / 1.75 * part;
+        const Quat heading = about_y(heading_of(c.pelvis.rotation_world));
+        c.pelvis.position_world = c.pelvis.position_world + rotate(heading, pelvis * k);
+        c.pelvis.rotation_world = heading * about_x(hips_rad * part);
+        c.body.pelvis_from_chest = about_x((spine_rad + chest_rad) * part);
+        return c;
+    }
+};
+
+class Stoop final : public PoseSource {
+ public:
+    Stoop(double part, double scale, double grasp_s, double end_s)
+        : part_(part), scale_(scale), grasp_s_(grasp_s), end_s_(end_s) {}
+    void sample(double t_s, PoseFrame& frame) const override {
+        constexpr double kStill_s = 0.12;  // before and after the hands close
+        const double u = part_ * smooth_rise(t_s, grasp_s_ - kStill_s) *
+                         smooth_rise(end_s_ - t_s, end_s_ - grasp_s_ - kStill_s);
+        const Bend bend;
+        frame.dofs[0] = bend.hips_rad * u;
+        frame.dofs[1] = bend.spine_rad * u;
+        frame.dofs[2] = bend.chest_rad * u;
+        frame.dofs[3] = -radians(24) * u;
+        frame.paths[0] = bend.pelvis * (scale_ * u);
+    }
+
+ private:
+    double part_, scale_, grasp_s_, end_s_;
+};
+
+class Take final : public Movement {
+ public:
+    Take(const MotionContext& given, const TakeSpec& spec, Quat hands_world)
+        : figure_(given.figure), spec_(spec), world_from_hands_{hands_world, spec.ball_world} {
+        const MotionContext context = arms_in_chest_space(given);
+        limbs = kBothArms;
+        duration = duration_of(context, spec.grasps_s + spec.brings_s);
+        carried_ = carried_ball_chest(figure_, spec.radius_m);
+        offsets_ = ArmOffsets::make(
+            context, [this](double t, Controls& out) { own(t, out); }, 0.75 * spec.grasps_s);
+    }
+    void sample(double t_s, Controls& out) const override {
+        own(t_s, out);
+        offsets_.apply(t_s, out);
+    }
+
+ private:
+    void own(double t_s, Controls& out) const {
+        const Transform there = inverse(world_from_chest(figure_, out)) * world_from_hands_;
+        const double closing = smooth_rise(t_s - 0.45 * spec_.grasps_s, 0.55 * spec_.grasps_s);
+        const double brought = smooth_rise(t_s - spec_.grasps_s, spec_.brings_s);
+        // Over the knees, not through them.
+        const Vec3 ahead = Vec3{0, 0, 0.07} * (4 * brought * (1 - brought));
+        lay_hands(figure_,
+                  {slerp(there.rotation, carried_.rotation, brought),
+                   lerp(there.translation, carried_.translation, brought) + ahead},
+                  spec_.radius_m, kOpen_m * (1 - closing), out);
+    }
+
+    const figure::Figure& figure_;
+    TakeSpec spec_;
+    Transform world_from_hands_, carried_;
+    ArmOffsets offsets_;
+};
+
+class Give final : public Movement {
+ public:
+    Give(const MotionContext& given, const GiveSpec& spec) : figure_(given.figure), spec_(spec) {
+        const MotionContext context = arms_in_chest_space(given);
+        limbs = kBothArms;
+        duration = duration_of(context, spec.duration_s);
+        events = {{to_time(kHandOver_s), "hand_over", Limb::kPelvis}};
+        from_ = held_ball(context, spec.radius_m).chest_from_ball;
+        const Vec3 ball_chest =
+            inverse(world_from_chest(figure_, context.now)) * spec.meeting_world;
+        world_from_hands_ = {normalized(world_from_chest(figure_, context.now).rotation *
+                                        about_x(easy_pitch(figure_, ball_chest, spec.radius_m)) *
+                                        about_z(kRoll_rad)),
+                             spec.meeting_world};
+        offsets_ = ArmOffsets::make(
+            context, [this](double t, Controls& out) { own(t, out); }, 0.5);
+    }
+    void sample(double t_s, Controls& out) const override {
+        own(t_s, out);
+        offsets_.apply(t_s, out);
+    }
+
+ private:
+    void own(double t_s, Controls& out) const {
+        const Transform there = inverse(world_from_chest(figure_, out)) * world_from_hands_;
+        const double out_there = smooth_rise(t_s, 0.85 * kHandOver_s);
+        const double open = smooth_rise(t_s - kHandOver_s - 0.04, 0.3);
+        lay_hands(figure_,
+                  {slerp(from_.rotation, there.rotation, out_there),
+                   lerp(from_.translation, there.translation, out_there)},
+                  spec_.radius_m, kOpen_m * open, out);
+        const double down = smooth_rise(t_s - kHandOver_s - 0.15, 0.85);
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            ArmControl& arm = out.arms[index_of(side)];
+            const ArmControl hangs = hanging_arm(figure_, side);
+            arm.chest_from_hand = {
+                slerp(arm.chest_from_hand.rotation, hangs.chest_from_hand.rotation, down),
+                lerp(arm.chest_from_hand.translation, hangs.chest_from_hand.translation, down)};
+            arm.swivel_rad = lerp(arm.swivel_rad, hangs.swivel_rad, down);
+            arm.spread = lerp(arm.spread, hangs.spread, down);
+            arm.grip = lerp(arm.grip, hangs.grip, down);
+            arm.relaxed = lerp(arm.relaxed, hangs.relaxed, down);
+        }
+    }
+
+    const figure::Figure& figure_;
+    GiveSpec spec_;
+    Transform from_, world_from_hands_;
+    ArmOffsets offsets_;
+};
+
+// The hands' frame at a ball there, for a chest that is where these controls have it.
+Quat hands_at(const figure::Figure& figure, const Controls& c, Vec3 ball_world, double radius_m,
+              double roll_rad) {
+    const Transform chest = world_from_chest(figure, c);
+    return normalized(chest.rotation *
+                      about_x(easy_pitch(figure, inverse(chest) * ball_world, radius_m)) *
+                      about_z(roll_rad));
+}
+
+double reach_to(const figure::Figure& figure, const Controls& c, Vec3 ball_world, double radius_m) {
+    const Transform ball{hands_at(figure, c, ball_world, radius_m, 0), ball_world};
+    const Transform chest_from_ball = inverse(world_from_chest(figure, c)) * ball;
+    double most = 0;
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+        const figure::Arm& arm = figure.arms[index_of(side)];
+        const Vec3 hand = (chest_from_ball * ball_from_hand(figure, side, radius_m)).translation;
+        most = std::fmax(most,
+                         length(hand - shoulder_chest(figure, side)) / (arm.upper_m + arm.fore_m));
+    }
+    return most;
+}
+
+}  // namespace
+
+PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
+    constexpr double kEasy = 0.93, kFarthest = 1.0;
+    const figure::Figure& figure = context.figure;
+    Controls stands = context.now;
+    stands.pelvis = pelvis_over_feet(figure, context.now);
+    double part = 0;
+    const Bend bend;
+    while (part < 1 && reach_to(figure, bend.applied(figure, stands, part), spec.ball_world,
+                                spec.radius_m) > kEasy) {
+        part += 0.04;
+    }
+    const Controls low = bend.applied(figure, stands, std::fmin(part, 1));
+    const double own_s = context.duration.ticks > 0 ? context.duration.seconds() : spec.duration_s;
+    const double grasp_s = kGrasp * own_s;
+    const PosedSpec posed{.name = "pick_up",
+                          .duration_s = own_s,
+                          .dofs = {"hips.flex", "spine.flex", "chest.flex", "head.flex"},
+                          .paths = {{Limb::kPelvis, PathSpace::kStart}}};
+    MovementPtr body = make_posed(
+        context, posed,
+        std::make_shared<Stoop>(std::fmin(part, 1), figure.height_m / 1.75, grasp_s, own_s));
+    const Quat hands = hands_at(figure, low, spec.ball_world, spec.radius_m, 0);
+    MotionContext arms_context = context;
+    auto arms = std::make_shared<Take>(arms_context,
+                                       TakeSpec{.radius_m = spec.radius_m,
+                                                .ball_world = spec.ball_world,
+                                                .grasps_s = grasp_s,
+                                                .brings_s = 0.92 * (own_s - grasp_s)},
+                                       hands);
+    arms->events = {{to_time(grasp_s), "grasp", Limb::kPelvis}};
+    PickUp made;
+    made.movement = side_by_side(std::move(body), std::move(arms));
+    made.grasps_after = to_time(grasp_s);
+    made.reaches = reach_to(figure, low, spec.ball_world, spec.radius_m) <= kFarthest;
+    return made;
+}
+
+HandOver meeting_of(const figure::Figure& giver, const Controls& from, const figure::Figure& taker,
+                    const Controls& to) {
+    const Vec3 a = from.pelvis.position_world, b = to.pelvis.position_world;
+    Vec3 meeting = (a + b) * 0.5;
+    meeting.y = 0.5 * (0.62 * giver.height_m + 0.62 * taker.height_m);
+    const double apart = length(Vec3{b.x - a.x, 0, b.z - a.z});
+    const double reach =
+        giver.arms[0].upper_m + giver.arms[0].fore_m + taker.arms[0].upper_m + taker.arms[0].fore_m;
+    return {meeting, apart > 0.5 && apart < 0.95 * reach};
+}
+
+MovementPtr make_give(const MotionContext& context, const GiveSpec& spec) {
+    return side_by_side(
+        make_idle(context, {.limbs = without(kAllLimbs, kBothArms), .duration_s = spec.duration_s}),
+        std::make_shared<Give>(context, spec));
+}
+
+MovementPtr make_take(const MotionContext& context, const TakeSpec& spec) {
+    return std::make_shared<Take>(
+        context, spec,
+        hands_at(context.figure, context.now, spec.ball_world, spec.radius_m, spec.roll_rad));
+}
+
+}  // namespace puppetri::motion
