@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "puppetri/base/hash.h"
+#include "puppetri/math/rotation.h"
 #include "puppetri/motion/arms.h"
 #include "puppetri/motion/controls_from_pose.h"
 #include "puppetri/motion/grip.h"
