@@ -20,12 +20,12 @@
 namespace puppetri::motion {
 namespace {
 
-constexpr double kCrouch_s = 0.62, kPush_s = 0.20, kGive_s = 0.26, kRise_s = 0.62;
+constexpr double kCrouch_s = 0.62, kPush_s = 0.20, kGive_s = 0.30, kRise_s = 0.62;
 constexpr double kHeelUp_rad = radians(30), kToesDown_rad = radians(40);
 constexpr double kLongest = 0.985;  // part of a leg's length that the hips are above the ankle
 
 // The pitch of the feet when they leave and land; heels up.
-constexpr Motion1 kOff{-kHeelUp_rad, -5, 0}, kOn{-0.8 * kHeelUp_rad, 4.5, 0};
+constexpr Motion1 kOff{-kHeelUp_rad, -5, 0}, kOn{-0.8 * kHeelUp_rad, 3.6, 0};
 
 double height_of(double height_m) { return clamp(height_m, 0.02, 0.6); }
 
@@ -160,7 +160,7 @@ class Jump final : public Movement {
         pitch.push_back({leaves_s_, kOff});
         pitch.push_back({leaves_s_ + 0.5 * flight, {-kToesDown_rad, 0, 0}});
         pitch.push_back({lands_s_, kOn});
-        pitch.push_back({lands_s_ + 0.14, {}});
+        pitch.push_back({lands_s_ + 0.18, {}});
         foot.set_pitch(Curve1(std::move(pitch)));
         const Motion3 from = ankle_on_print(figure_, side, landing.print, kOff);
         const Motion3 to = ankle_on_print(figure_, side, landing.print, kOn);
