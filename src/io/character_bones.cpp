@@ -57,12 +57,16 @@ Words words_of(std::string_view name) {
         name.remove_prefix(colon + 1);
     }
     Words result;
+    bool numbered = false;  // "Bip01": the number of a prefix says nothing
     for (std::string& word : split(name)) {
-        if (word.starts_with("mixamorig") || word.starts_with("bip") || word == "armature" ||
-            word == "skeleton" || word == "joint" || word == "jnt" || word == "bone" ||
-            word == "bn" || word == "def" || word == "j") {
+        const bool prefix = word.starts_with("mixamorig") || word.starts_with("bip");
+        if (prefix || (numbered && is_digit(word[0])) || word == "armature" || word == "skeleton" ||
+            word == "joint" || word == "jnt" || word == "bone" || word == "bn" || word == "def" ||
+            word == "j") {
+            numbered = prefix;
             continue;
         }
+        numbered = false;
         if (result.side == Of::kMiddle && (word == "l" || word == "left")) {
             result.side = Of::kLeft;
         } else if (result.side == Of::kMiddle && (word == "r" || word == "right")) {

@@ -205,7 +205,7 @@ void Elaboration::fill_linkage(const lang::CastMember& member, const Scope& scop
             auto link = link_of(p, scope, links);
             whole = whole && link.has_value();
             if (link) {
-                where.emplace("link " + link->name, p.span);
+                where["link " + link->name] = p.span;  // of two with one name the second
                 links.push_back(std::move(*link));
             }
         } else {

@@ -103,7 +103,7 @@ bool there(const char* name) {
 }  // namespace
 
 TEST_CASE("humanoid bones are found by the names of all programs [unit]") {
-    const auto check = [](const char* what, auto name) {
+    const auto check = [](const std::string& what, auto name) {
         CAPTURE(what);
         TinyFile file;
         file.name = name;
@@ -120,7 +120,8 @@ TEST_CASE("humanoid bones are found by the names of all programs [unit]") {
     };
     for (const BoneNames names :
          {BoneNames::kVrm, BoneNames::kMixamo, BoneNames::kUnreal, BoneNames::kRigify}) {
-        check("a set", [names](const std::string& b) { return bone_name(names, b); });
+        check("set " + std::to_string(static_cast<int>(names)),
+              [names](const std::string& b) { return bone_name(names, b); });
     }
     check("Mixamo with its colon", [](const std::string& b) {
         return "mixamorig:" + bone_name(BoneNames::kMixamo, b).substr(9);
