@@ -304,6 +304,9 @@ int run(const Arguments& arguments) {
             return kBadInput;
         }
     }
+    if (!out.empty() && !carry_onto(*file, arguments, writing->rate_hz)) {
+        return kBadInput;
+    }
     if (out.empty()) {
         tell(*file, arguments.given("--json"));
         return kFine;

@@ -98,6 +98,7 @@ Command convert_command() {
         "  puppetri convert ball.pup ball.pnml --lossy the net without movements and times\n"
         "  puppetri convert model.pnml - --to dot | dot -Tsvg > model.svg\n"
         "  puppetri convert take.bvh take.glb --scale 0.056444\n"
+        "  puppetri convert take.bvh man.glb --scale 0.056444 --onto CesiumMan.glb\n"
         "  puppetri convert fox.glb run.keys --clip Run",
         {{"in", Value::kText, "IN", "a net, a scene, or a file of motion", true},
          {"out", Value::kText, "OUT", "the file to write; of nets also - for stdout", true},

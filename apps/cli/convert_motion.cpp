@@ -6,7 +6,13 @@
 
 #include "puppetri/base/frame_rate.h"
 #include "puppetri/base/text.h"
+#include "puppetri/figure/mannequin.h"
+#include "puppetri/io/character_reader.h"
+#include "puppetri/io/clip_performer.h"
+#include "puppetri/io/disk_files.h"
+#include "puppetri/io/gltf_document.h"
 #include "puppetri/io/json_writer.h"
+#include "puppetri/motion/retarget.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -16,6 +22,10 @@ std::vector<Option> motion_options() {
              "motion: a length of the file times S is metres (BVH: 0.01 unless said)", false},
             {"--clip", Value::kTexts, "NAME", "motion: only this clip; may be given again", false},
             {"--fps", Value::kText, "RATE", "motion: frames per second of what is sampled", false},
+            {"--onto", Value::kText, "FIGURE",
+             "motion: carried to another humanoid: a .glb, .gltf or .vrm file, or the height of a "
+             "mannequin in metres",
+             false},
             {"--unit", Value::kText, "UNIT", "BVH out: cm or m", false},
             {"--names", Value::kText, "SET", "bones out: vrm, mixamo, unreal or rigify", false},
             {"--json", Value::kFlag, "", "motion: say what was written as JSON", false}};
@@ -88,6 +98,72 @@ bool keep_clips(io::ClipFile& file, const std::vector<std::string>& names) {
     return true;
 }
 
+bool carry_onto(io::ClipFile& file, const Arguments& arguments, double rate_hz) {
+    const std::string onto = arguments.text("--onto");
+    if (onto.empty()) {
+        return true;
+    }
+    const Checked<figure::Character> source = io::performer_of(file, arguments.text("in"));
+    if (!source) {
+        say_diagnostics(source.error());
+        return false;
+    }
+    const motion::Performer from{source->skeleton, *source->humanoid};
+    motion::RetargetOptions options;
+    if (rate_hz > 0) {
+        options.rate_hz = rate_hz;
+    } else if (file.frame_s > 0) {
+        options.rate_hz = 1 / file.frame_s;
+    }
+    std::optional<figure::Figure> mannequin;
+    std::optional<figure::Character> character;
+    if (const std::optional<double> height = parse_number(onto)) {
+        if (!(*height >= 0.5 && *height <= 3)) {
+            say_error("--onto: a mannequin is 0.5 to 3 m tall");
+            return false;
+        }
+        mannequin = figure::make_mannequin(*height);
+    } else {
+        io::DiskFiles disk;
+        Result<std::string, scene::FileProblem> bytes = disk.read(onto);
+        if (!bytes) {
+            say_error(onto + ": " + bytes.error().message);
+            return false;
+        }
+        Checked<io::GltfDocument> document =
+            io::GltfDocument::parse(std::move(*bytes), onto, &disk);
+        Diagnostics notes;
+        Checked<figure::Character> read =
+            document ? io::read_character(*document, {.path = onto}, notes)
+                     : Checked<figure::Character>(Unexpected(std::move(document).error()));
+        if (!read) {
+            say_diagnostics(read.error());
+            return false;
+        }
+        if (!read->humanoid) {
+            say_error(onto + " has no humanoid in it");
+            return false;
+        }
+        character = std::move(*read);
+    }
+    for (motion::Clip& clip : file.clips) {
+        motion::Retargeted made =
+            mannequin ? motion::retarget(clip, from, *mannequin, options)
+                      : motion::retarget(
+                            clip, from,
+                            motion::Performer{character->skeleton, *character->humanoid}, options);
+        if (made.worst_foot_m > 0.02) {
+            say(clip.name + ": at worst a foot is " +
+                number_to_text_fixed(100 * made.worst_foot_m, 0) +
+                " cm from where it should be: the legs are too short for it");
+        }
+        clip = std::move(made.clip);
+    }
+    file.skeleton = mannequin ? mannequin->skeleton : character->skeleton;
+    file.frame_s = 1 / options.rate_hz;
+    return true;
+}
+
 int write_motion(const std::string& path, const io::ClipFile& file,
                  const io::ClipWriteOptions& options, bool json) {
     Diagnostics notes;
@@ -136,6 +212,9 @@ int convert_motion(const Arguments& arguments) {
     }
     say_diagnostics(file->notes);
     if (!keep_clips(*file, arguments.texts("--clip"))) {
+        return kBadInput;
+    }
+    if (!carry_onto(*file, arguments, writing->rate_hz)) {
         return kBadInput;
     }
     return write_motion(arguments.text("out"), *file, *writing, arguments.given("--json"));

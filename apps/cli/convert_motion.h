@@ -21,6 +21,10 @@ std::vector<Option> motion_options();
 // Keeps the clips of these names (all without a name). Says which is not there, and gives false.
 bool keep_clips(io::ClipFile& file, const std::vector<std::string>& names);
 
+// Carries all clips onto another humanoid, where --onto names one. Says what is wrong, and gives
+// false.
+bool carry_onto(io::ClipFile& file, const Arguments& arguments, double rate_hz);
+
 // Writes the file and tells it, as JSON where that is wanted; gives the exit code.
 int write_motion(const std::string& path, const io::ClipFile& file,
                  const io::ClipWriteOptions& options, bool json);
