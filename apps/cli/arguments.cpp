@@ -46,6 +46,7 @@ void bind(CLI::App& app, BoundCommand& out) {
                                        : CLI::MultiOptionPolicy::TakeLast);
         if (option.value == Value::kTexts) {
             b.cli->expected(1, -1);
+            b.cli->allow_extra_args(option.name.front() != '-');  // several by position
         }
         if (option.value == Value::kInteger) {
             b.cli->check(CLI::TypeValidator<std::int64_t>());

@@ -442,5 +442,50 @@ class Prove(Cli):
         self.assertLessEqual({"deadlock_free", "bounded", "live", "quasi_live", "reversible"}, rules)
 
 
+class Motion(Cli):
+    CORPUS = ROOT / "tests/corpus/motion"
+
+    def test_motion_is_converted_edited_and_told(self):
+        bvh, glb, keys = self.path / "a.bvh", self.path / "a.glb", self.path / "b.keys"
+        done = run("convert", self.CORPUS / "walk.keys", bvh, "--clip", "walk", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["files"], [str(bvh)])
+        self.assertEqual(run("convert", bvh, glb, "--fps", "50").returncode, 0)
+        done = run("clip", glb, "repeat 2", "mirror", "reverse", "-o", keys)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(run("clip", keys, "--json").stdout)
+        self.assertAlmostEqual(told["clips"][0]["duration_s"], 2, places=2)
+        self.assertEqual(run("clip", self.CORPUS / "wave.vrma").returncode, 0)
+
+    def test_bad_motion_exits_2_and_writes_nothing(self):
+        out = self.path / "out.glb"
+        text = (self.CORPUS / "dance.bvh").read_text()
+        broken = self.path / "broken.bvh"
+        for change in (("-40 -50 -60 2e-3", "-40 -50 -60"), ("-40", "nan"), ("Frames: 3", "Frames: 30"),
+                       ("0.0333333", "-1"), ("CHANNELS 3", "CHANNELS 4")):
+            broken.write_text(text.replace(*change))
+            done = run("convert", broken, out)
+            self.assertEqual(done.returncode, 2, change)
+            self.assertIn("broken.bvh:", done.stderr)
+            self.assertIn("help:", done.stderr)
+            self.assertFalse(out.exists())
+        whole = (self.CORPUS / "wave.glb").read_bytes()
+        cut = self.path / "cut.glb"
+        cut.write_bytes(whole[:-40])
+        self.assertEqual(run("convert", cut, out).returncode, 2)
+        self.assertFalse(out.exists())
+        for arguments in (["convert", self.CORPUS / "dance.bvh", out, "--scale", "0"],
+                          ["convert", self.CORPUS / "dance.bvh", out, "--clip", "nobody"],
+                          ["convert", self.CORPUS / "dance.bvh", self.path / "a.vrma"],
+                          ["convert", self.CORPUS / "dance.bvh", out, "--onto", "1.7"],
+                          ["clip", self.CORPUS / "dance.bvh", "mirror"],
+                          ["clip", self.CORPUS / "dance.bvh", "copy 5 9", "-o", out],
+                          ["clip", self.CORPUS / "dance.bvh", "twist", "-o", out]):
+            done = run(*arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertTrue(done.stderr)
+            self.assertFalse(out.exists())
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])
