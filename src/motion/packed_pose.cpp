@@ -140,24 +140,28 @@ void to_model_space(const PackedSkeleton& skeleton, const PackedPose& local, Pac
 void to_matrices(const PackedSkeleton& skeleton, const PackedPose& pose, std::span<float> out) {
     const std::uint32_t n = skeleton.joint_count();
     PUP_REQUIRE(pose.stride() == skeleton.stride() && out.size() == std::size_t{12} * n);
-    const float *xs = pose.component(0), *ys = pose.component(1), *zs = pose.component(2),
-                *ws = pose.component(3);
-    for (std::uint32_t slot = 0; slot < n; ++slot) {
-        const float x = xs[slot], y = ys[slot], z = zs[slot], w = ws[slot];
-        const float x2 = x + x, y2 = y + y, z2 = z + z;
-        float* m = &out[std::size_t{12} * skeleton.joint_of(slot).value];
-        m[0] = 1 - (y * y2 + z * z2);
-        m[1] = x * y2 + w * z2;
-        m[2] = x * z2 - w * y2;
-        m[3] = x * y2 - w * z2;
-        m[4] = 1 - (x * x2 + z * z2);
-        m[5] = y * z2 + w * x2;
-        m[6] = x * z2 + w * y2;
-        m[7] = y * z2 - w * x2;
-        m[8] = 1 - (x * x2 + y * y2);
-        m[9] = pose.component(4)[slot];
-        m[10] = pose.component(5)[slot];
-        m[11] = pose.component(6)[slot];
+    // Four slots at once; the strides leave room for lanes behind the last.
+    using simd::Float4;
+    const Float4 one = Float4::all(1);
+    const auto at = [&](int component, std::uint32_t slot) {
+        return Float4::load(pose.component(component) + slot);
+    };
+    for (std::uint32_t slot = 0; slot < n; slot += 4) {
+        const Float4 x = at(0, slot), y = at(1, slot), z = at(2, slot), w = at(3, slot);
+        const Float4 x2 = x + x, y2 = y + y, z2 = z + z;
+        Float4 rows[3][4] = {
+            {one - (y * y2 + z * z2), x * y2 + w * z2, x * z2 - w * y2, x * y2 - w * z2},
+            {one - (x * x2 + z * z2), y * z2 + w * x2, x * z2 + w * y2, y * z2 - w * x2},
+            {one - (x * x2 + y * y2), at(4, slot), at(5, slot), at(6, slot)}};
+        for (Float4(&row)[4] : rows) {
+            transpose(row);
+        }
+        for (std::uint32_t i = 0; i < 4 && slot + i < n; ++i) {
+            float* m = &out[std::size_t{12} * skeleton.joint_of(slot + i).value];
+            rows[0][i].store(m);
+            rows[1][i].store(m + 4);
+            rows[2][i].store(m + 8);
+        }
     }
 }
 

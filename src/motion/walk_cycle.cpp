@@ -257,6 +257,12 @@ Checked<WalkCycle> cut_walk_cycle(const Clip& clip, const figure::Skeleton& skel
                        "check the scale, look elsewhere in the take, or ask for hops");
     }
 
+    if (best->distance > options.worst_mismatch_m) {
+        return failure("no-stride", "clip " + clip.name,
+                       "no stride repeats: even the best one's ends are " +
+                           std::to_string(std::lround(1000 * best->distance)) + " mm apart",
+                       "look elsewhere in the take, or ask for hops");
+    }
     const double begin_s = static_cast<double>(best->begin) * kStep_s,
                  end_s = static_cast<double>(best->end) * kStep_s;
     Clip source = clip;

@@ -64,6 +64,17 @@ struct Float4 {
         return {Vector{std::sqrt(a.v[0]), std::sqrt(a.v[1]), std::sqrt(a.v[2]), std::sqrt(a.v[3])}};
 #endif
     }
+    // Four rows of four become columns.
+    friend void transpose(Float4 (&r)[4]) {
+        const Vector a = __builtin_shufflevector(r[0].v, r[1].v, 0, 4, 1, 5),
+                     b = __builtin_shufflevector(r[0].v, r[1].v, 2, 6, 3, 7),
+                     c = __builtin_shufflevector(r[2].v, r[3].v, 0, 4, 1, 5),
+                     d = __builtin_shufflevector(r[2].v, r[3].v, 2, 6, 3, 7);
+        r[0].v = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+        r[1].v = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+        r[2].v = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+        r[3].v = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+    }
     friend Float4 where_negative(Float4 x, Float4 a, Float4 b) { return {x.v < 0.0f ? a.v : b.v}; }
 };
 

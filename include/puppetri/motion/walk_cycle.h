@@ -37,7 +37,9 @@ struct CycleOptions {
     ContactThresholds contacts = {};
     double shortest_s = 0.5, longest_s = 2.5;  // of a stride: two steps
     double begin_s = 0, end_s = 1e9;           // where in the clip to look
-    double blend_s = 0.2;                      // over which the loop is closed
+    // Ends that fit worse than this are no repetition: there is then no stride.
+    double worst_mismatch_m = 0.12;
+    double blend_s = 0.2;  // over which the loop is closed
     // A walk or run: the right foot lands in the middle three fifths of the stride. Otherwise any
     // landings will do, together too: hops.
     bool alternating = true;
@@ -56,7 +58,8 @@ struct WalkCycle {
 // tenth of a second around: the places and velocities of all joints, both seen from the root.
 // Gives   marks "contact" and "foot_strike" of both feet.
 // Fails   "no-root", "no-foot" (with the joint's name), "no-stride": the left foot does not land
-//         twice within the range, or the right foot not in between (see alternating).
+//         twice within the range, or the right foot not in between (see alternating), or no two
+//         ends fit.
 // Source  comparing clouds of points after planar alignment: L. Kovar, M. Gleicher, F. Pighin,
 //         "Motion graphs", SIGGRAPH 2002, section 3.1.
 Checked<WalkCycle> cut_walk_cycle(const Clip& clip, const figure::Skeleton& skeleton,
