@@ -19,7 +19,7 @@ namespace {
 
 int run(const Arguments& arguments) {
     const std::string in = arguments.text("in"), out = arguments.text("out");
-    if (io::clip_format_of(in)) {
+    if (io::clip_format_of(in) || in.ends_with(".tuples")) {
         return convert_motion(arguments);
     }
     const std::string to = arguments.text("--to");
@@ -90,7 +90,8 @@ Command convert_command() {
         "Motion: reads keyframe files (.keys), BVH, glTF (.glb, .gltf, .vrm) and VRM animations "
         "(.vrma). Writes .keys, .bvh,\n"
         ".glb and .gltf: all clips, or those of --clip. A capture that is not in centimetres "
-        "needs --scale: of CMU 0.056444.\n"
+        "needs --scale: of CMU 0.056444. A tuple file (.tuples: FRAME OBJECT EVENT) becomes "
+        "absolute keyframes.\n"
         "The formats: docs/formats.\n\n"
         "Examples:\n"
         "  puppetri convert model.pnml model.net\n"
@@ -104,6 +105,7 @@ Command convert_command() {
          {"out", Value::kText, "OUT", "the file to write; of nets also - for stdout", true},
          {"--to", Value::kText, "FORMAT",
           "nets: pnml, pipe, tina, lola, dot or pup; else by the ending of OUT", false},
+         {"--poses", Value::kText, "FILE", "tuples: the keyframes that they name", false},
          {"--lossy", Value::kFlag, "", "nets: drop what the format has no words for", false}},
         run};
     for (Option& option : motion_options()) {

@@ -12,6 +12,7 @@
 #include "puppetri/io/disk_files.h"
 #include "puppetri/io/gltf_document.h"
 #include "puppetri/io/json_writer.h"
+#include "puppetri/io/keyframe_tuples.h"
 #include "puppetri/motion/retarget.h"
 #include "terminal.h"
 
@@ -199,13 +200,46 @@ int write_motion(const std::string& path, const io::ClipFile& file,
     return kFine;
 }
 
+namespace {
+
+// The absolute keyframes that a tuple file makes of the poses of another file.
+Checked<io::ClipFile> load_tuples(const Arguments& arguments, double rate_hz) {
+    const std::string path = arguments.text("in"), poses_path = arguments.text("--poses");
+    const auto failure = [](const std::string& file, std::string message, std::string remedy) {
+        return Unexpected(Diagnostics{{Severity::kError,
+                                       "cannot-read",
+                                       {file, 0, 0, 1},
+                                       "",
+                                       std::move(message),
+                                       std::move(remedy)}});
+    };
+    if (poses_path.empty()) {
+        return failure(path, "tuples name keyframes that stand in another file",
+                       "name it: --poses FILE.keys");
+    }
+    io::DiskFiles disk;
+    Result<std::string, scene::FileProblem> text = disk.read(path);
+    if (!text) {
+        return failure(path, text.error().message, "name a file that is there");
+    }
+    PUP_TRY(const std::vector<io::KeyframeTuple> tuples, io::read_tuples(*text, path));
+    PUP_TRY(const io::ClipFile poses, io::load_clips(poses_path));
+    // A frame is one of the poses' file (frames 24), or of --fps.
+    const double rate = rate_hz > 0 ? rate_hz : poses.frame_s > 0 ? 1 / poses.frame_s : 24;
+    return io::absolute_keyframes(tuples, poses, rate, motion::Interpolation::kLinear, path);
+}
+
+}  // namespace
+
 int convert_motion(const Arguments& arguments) {
     const std::optional<io::ClipReadOptions> reading = motion_read_options(arguments);
     const std::optional<io::ClipWriteOptions> writing = motion_write_options(arguments);
     if (!reading || !writing) {
         return kBadInput;
     }
-    Checked<io::ClipFile> file = io::load_clips(arguments.text("in"), *reading);
+    const std::string in = arguments.text("in");
+    Checked<io::ClipFile> file = in.ends_with(".tuples") ? load_tuples(arguments, writing->rate_hz)
+                                                         : io::load_clips(in, *reading);
     if (!file) {
         say_diagnostics(file.error());
         return kBadInput;

@@ -457,6 +457,20 @@ class Motion(Cli):
         self.assertAlmostEqual(told["clips"][0]["duration_s"], 2, places=2)
         self.assertEqual(run("clip", self.CORPUS / "wave.vrma").returncode, 0)
 
+    def test_tuples_become_absolute_keyframes(self):
+        tuples, poses, out = self.path / "dp.tuples", self.path / "poses.keys", self.path / "dp.keys"
+        tuples.write_text("0 man1 RESTING\n24 man1 EATING1\n")
+        poses.write_text("keys 1\nframes 24\nclip RESTING root root\nnumber head.flex degrees\n 0 0\n"
+                         "clip EATING1 root root\nnumber head.flex degrees\n 0 30\n"
+                         "clip man1 root root\ntranslation root\n 0 1 0 2\n")
+        self.assertEqual(run("convert", tuples, out, "--poses", poses).returncode, 0)
+        self.assertIn("clip man1 lasts 1", out.read_text())
+        tuples.write_text("0 man1 SLEEPING\n")
+        other = self.path / "other.keys"
+        self.assertEqual(run("convert", tuples, other, "--poses", poses).returncode, 2)
+        self.assertEqual(run("convert", tuples, other).returncode, 2)
+        self.assertFalse(other.exists())
+
     def test_bad_motion_exits_2_and_writes_nothing(self):
         out = self.path / "out.glb"
         text = (self.CORPUS / "dance.bvh").read_text()
