@@ -4,6 +4,7 @@
 #include "puppetri/figure/character.h"
 #include "puppetri/io/character_reader.h"
 #include "puppetri/io/clip_file.h"
+#include "puppetri/io/humanoid_clips.h"
 #include "puppetri/motion/clip.h"
 #include "puppetri/scene/file_source.h"
 
@@ -36,14 +37,14 @@ Checked<scene::LoadedCharacter> FileAssets::character(const scene::CharacterRequ
     return loaded;
 }
 
-Checked<std::shared_ptr<const std::vector<motion::Clip>>> FileAssets::clips(
-    const std::string& path) {
-    auto bytes = files_.read(path);
+Checked<scene::LoadedClips> FileAssets::clips(const scene::ClipRequest& request) {
+    auto bytes = files_.read(request.path);
     if (!bytes) {
-        return unreadable(path, bytes.error().message);
+        return unreadable(request.path, bytes.error().message);
     }
-    PUP_TRY(ClipFile file, parse_clips(std::move(*bytes), path, {}, &files_));
-    return std::make_shared<const std::vector<motion::Clip>>(std::move(file.clips));
+    PUP_TRY(ClipFile file,
+            parse_clips(std::move(*bytes), request.path, {.scale = request.scale}, &files_));
+    return to_humanoid(std::move(file), request.path);
 }
 
 }  // namespace puppetri::io

@@ -21,19 +21,12 @@ constexpr double kOpen_m = 0.07;  // palms from the ball before they close
 constexpr double kGrasp = 0.45;   // part of a picking up until the hands have it
 constexpr double kRoll_rad = radians(38);
 
-// How deep the body goes, and how it bends: 1 is for a ball on the floor.
+// How deep the body goes, and how it bends, for a ball on the floor.
 struct Bend {
-    double hips_rad = radians(46), spine_rad = radians(22), chest_rad = radians(16);
-    Vec3 pelvis{0, -0.42, -0.17};  // of a figure of 1.75 m
-
-    Controls applied(const figure::Figure& figure, Controls c, double part) const {
-        const double k = figure.height_m / 1.75 * part;
-        const Quat heading = about_y(heading_of(c.pelvis.rotation_world));
-        c.pelvis.position_world = c.pelvis.position_world + rotate(heading, pelvis * k);
-        c.pelvis.rotation_world = heading * about_x(hips_rad * part);
-        c.body.pelvis_from_chest = about_x((spine_rad + chest_rad) * part);
-        return c;
-    }
+    // The joints of the trunk alike: then controls know where the chest is to the millimetre.
+    double hips_rad = radians(40), spine_rad = radians(19), chest_rad = radians(19),
+           upper_rad = radians(19);
+    Vec3 pelvis{0, -0.36, -0.16};  // of a figure of 1.75 m
 };
 
 class Stoop final : public PoseSource {
@@ -48,7 +41,8 @@ class Stoop final : public PoseSource {
         frame.dofs[0] = bend.hips_rad * u;
         frame.dofs[1] = bend.spine_rad * u;
         frame.dofs[2] = bend.chest_rad * u;
-        frame.dofs[3] = -radians(24) * u;
+        frame.dofs[3] = bend.upper_rad * u;
+        frame.dofs[4] = -radians(24) * u;
         frame.paths[0] = bend.pelvis * (scale_ * u);
     }
 
@@ -167,29 +161,27 @@ double reach_to(const figure::Figure& figure, const Controls& c, Vec3 ball_world
 }  // namespace
 
 PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
-    constexpr double kEasy = 0.93, kFarthest = 1.0;
+    constexpr double kEasy = 0.93, kFarthest = 0.985;
     const figure::Figure& figure = context.figure;
-    Controls stands = context.now;
-    stands.pelvis = pelvis_over_feet(figure, context.now);
-    double part = 0;
-    const Bend bend;
-    while (part < 1 && reach_to(figure, bend.applied(figure, stands, part), spec.ball_world,
-                                spec.radius_m) > kEasy) {
-        part += 0.04;
-    }
-    const Controls low = bend.applied(figure, stands, std::fmin(part, 1));
     const double own_s = context.duration.ticks > 0 ? context.duration.seconds() : spec.duration_s;
     const double grasp_s = kGrasp * own_s;
-    const PosedSpec posed{.name = "pick_up",
-                          .duration_s = own_s,
-                          .dofs = {"hips.flex", "spine.flex", "chest.flex", "head.flex"},
-                          .paths = {{Limb::kPelvis, PathSpace::kStart}}};
-    MovementPtr body = make_posed(
-        context, posed,
-        std::make_shared<Stoop>(std::fmin(part, 1), figure.height_m / 1.75, grasp_s, own_s));
+    const PosedSpec posed{
+        .name = "pick_up",
+        .duration_s = own_s,
+        .dofs = {"hips.flex", "spine.flex", "chest.flex", "upper_chest.flex", "head.flex"},
+        .paths = {{Limb::kPelvis, PathSpace::kStart}}};
+    // As deep as the arms need.
+    MovementPtr body;
+    Controls low = context.now;
+    double reach = 2;
+    for (double part = 0; part < 1.05 && reach > kEasy; part += 0.1) {
+        body = make_posed(context, posed,
+                          std::make_shared<Stoop>(part, figure.height_m / 1.75, grasp_s, own_s));
+        body->sample(grasp_s, low);
+        reach = reach_to(figure, low, spec.ball_world, spec.radius_m);
+    }
     const Quat hands = hands_at(figure, low, spec.ball_world, spec.radius_m, 0);
-    MotionContext arms_context = context;
-    auto arms = std::make_shared<Take>(arms_context,
+    auto arms = std::make_shared<Take>(context,
                                        TakeSpec{.radius_m = spec.radius_m,
                                                 .ball_world = spec.ball_world,
                                                 .grasps_s = grasp_s,
@@ -199,7 +191,7 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
     PickUp made;
     made.movement = side_by_side(std::move(body), std::move(arms));
     made.grasps_after = to_time(grasp_s);
-    made.reaches = reach_to(figure, low, spec.ball_world, spec.radius_m) <= kFarthest;
+    made.reaches = reach <= kFarthest;
     return made;
 }
 

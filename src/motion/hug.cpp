@@ -9,6 +9,7 @@
 #include "puppetri/math/quintic.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/idle.h"
+#include "puppetri/motion/posed.h"
 
 namespace puppetri::motion {
 namespace {
@@ -29,7 +30,7 @@ class Arms final : public Movement {
             const double s = side == Side::kLeft ? -1 : 1;
             const double y = (side == Side::kLeft ? -0.13 : 0.03) * k;
             const Vec3 open{0.44 * s * k, y, 0.24 * k}, beside{0.36 * s * k, y, -0.07 * k},
-                behind{0.20 * s * k, y, -0.205 * k}, on{0.11 * s * k, y, -0.185 * k};
+                behind{0.20 * s * k, y, -0.150 * k}, on{0.12 * s * k, y, -0.116 * k};
             const auto curve = [&](double Vec3::*axis) {
                 return Curve1({{0, {open.*axis, 0, 0}},
                                {0.55, {open.*axis, 0, 0}},
@@ -90,9 +91,21 @@ class Arms final : public Movement {
     ArmOffsets offsets_;
 };
 
+// A little towards the other, the head aside.
+class Leaning final : public PoseSource {
+ public:
+    void sample(double t_s, PoseFrame& frame) const override {
+        const double u = smooth_rise(t_s - 0.3, 1.0) * smooth_rise(kHug_s - 0.2 - t_s, 1.0);
+        frame.dofs[0] = radians(5) * u;
+        frame.dofs[1] = radians(5) * u;
+        frame.dofs[2] = radians(10) * u;
+        frame.paths[0] = Vec3{0, -0.005, 0.02} * u;
+    }
+};
+
 }  // namespace
 
-double hug_distance_m(double height_m) { return 0.23 * height_m; }
+double hug_distance_m(double height_m) { return 0.21 * height_m; }
 
 Hug make_hug(const MotionContext& context, const HugSpec& spec) {
     const Vec3 way = spec.other_now.pelvis.position_world - context.now.pelvis.position_world;
@@ -100,9 +113,12 @@ Hug make_hug(const MotionContext& context, const HugSpec& spec) {
     const double usual = hug_distance_m(0.5 * (context.figure.height_m + spec.other.height_m));
     Hug made;
     made.near = apart > 0.75 * usual && apart < 1.3 * usual;
-    made.movement = side_by_side(
-        make_idle(context, {.limbs = without(kAllLimbs, kBothArms), .duration_s = spec.duration_s}),
-        std::make_shared<Arms>(context, spec));
+    const PosedSpec posed{.name = "hug",
+                          .duration_s = kHug_s,
+                          .dofs = {"hips.flex", "chest.flex", "head.side"},
+                          .paths = {{Limb::kPelvis, PathSpace::kStart}}};
+    made.movement = side_by_side(make_posed(context, posed, std::make_shared<Leaning>()),
+                                 std::make_shared<Arms>(context, spec));
     return made;
 }
 

@@ -145,6 +145,7 @@ class Elaboration {
 
  private:
     friend class About;
+    friend class ClipBlock;
     friend class FormulaBlock;
     friend class FormulaCompiler;
 
@@ -302,6 +303,7 @@ class Elaboration {
     // own_movements.cpp -- movements that files define
     const OwnDefinition* own_movement(std::string_view name, std::uint32_t file);
     const OwnDefinition& define_movement(const lang::Block& block);
+    OwnDefinition define_clip(const lang::Block& block);  // clip_block.cpp
     std::string read_own_parameters(
         const lang::Block& block, motion::OwnSignature& signature,
         const std::function<void(const std::string&, motion::ParameterType, lang::Dimension)>& add);

@@ -644,7 +644,7 @@ const OwnDefinition& Elaboration::define_movement(const lang::Block& block) {
         error("no-name", block.kind.span, "this movement has no name",
               "write `" + block.kind.text + " NAME(me: actor) { ... }`");
     } else {
-        made = FormulaBlock(*this, block).define();
+        made = block.kind.text == "clip" ? define_clip(block) : FormulaBlock(*this, block).define();
     }
     const OwnDefinition& kept =
         own_movements_.emplace(key(block.span), std::move(made)).first->second;

@@ -234,7 +234,7 @@ struct Stage::Data {
 
     // Unless the movement was cut before, or the hands are elsewhere.
     void close_hands(const Grasp& grasp) {
-        constexpr double kNear_m = 0.05;
+        constexpr double kNear_m = 0.02;
         const Activity& activity = activities[grasp.activity];
         if (activity.cut && activity.left < grasp.at) {
             return;

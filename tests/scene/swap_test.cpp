@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The papers' point: the technique of a movement is chosen without touching the net. One net, the
-// greeting of one place made by six techniques: the log stays what it is, and every performance
+// greeting of one place made by seven techniques: the log stays what it is, and every performance
 // joins.
 #include <doctest/doctest.h>
 
@@ -10,6 +10,7 @@
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/host_movement.h"
+#include "puppetri/scene/assets.h"
 
 using namespace puppetri;
 using namespace puppetri::scene;
@@ -55,6 +56,54 @@ std::string net_with(const std::string& greet) {
     return text;
 }
 
+// A file of motion that a test makes: an arm that rises and falls, as a clip of its joint.
+class ArmClip final : public Assets {
+ public:
+    Checked<LoadedCharacter> character(const CharacterRequest&) override {
+        return Unexpected(Diagnostics{});
+    }
+    Checked<LoadedClips> clips(const ClipRequest& request) override {
+        if (request.path != "arm.keys") {
+            return Unexpected(Diagnostics{{Severity::kError,
+                                           "cannot-read",
+                                           {},
+                                           "file",
+                                           "there is no such file",
+                                           "name one"}});
+        }
+        motion::Clip clip;
+        clip.name = "raise";
+        clip.duration_s = 2.4;
+        clip.rotations.push_back({"rightUpperArm", {}});
+        clip.rotations.push_back({"rightLowerArm", {}});
+        for (int k = 0; k <= 8; ++k) {
+            motion::RotationKey key;
+            key.t_s = 0.3 * k;
+            key.interpolation = motion::Interpolation::kCatmullRom;
+            const double rise = puppetri::sin(kPi * k / 8.0) * puppetri::sin(kPi * k / 8.0);
+            key.value = about_z(radians(82) * (1 - rise));
+            clip.rotations[0].keys.push_back(key);
+            key.value = about_y(radians(20) + radians(70) * rise);
+            clip.rotations[1].keys.push_back(key);
+        }
+        LoadedClips loaded;
+        loaded.clips.push_back(std::move(clip));
+        return loaded;
+    }
+};
+
+class FilesWithClips final : public FileSource {
+ public:
+    MemoryFiles memory;
+    Result<std::string, FileProblem> read(const std::string& path) override {
+        return memory.read(path);
+    }
+    Assets* assets() override { return &clips_; }
+
+ private:
+    ArmClip clips_;
+};
+
 struct Taken {
     std::uint64_t log_hash = 0;
     Vec3 hand;  // of ana, in the middle of the greeting
@@ -62,8 +111,8 @@ struct Taken {
 
 Taken take(const std::string& greet, const std::string& definitions,
            std::span<const motion::OwnMovementPtr> host = {}) {
-    MemoryFiles files;
-    files.add("scene.pup", net_with(greet) + definitions);
+    FilesWithClips files;
+    files.memory.add("scene.pup", net_with(greet) + definitions);
     const Scene scene = must(load(files, "scene.pup", host));
     const Performed p = performed(scene);
     check_good(measured(p, scene, 0), greet);
@@ -84,7 +133,7 @@ Taken take(const std::string& greet, const std::string& definitions,
 
 }  // namespace
 
-TEST_CASE("a net never sees how its movements are made: six techniques, one log [agree]") {
+TEST_CASE("a net never sees how its movements are made: seven techniques, one log [agree]") {
     // Inverse kinematics.
     const Taken reach = take("reach((0, 1.3, 0.2) m)", "");
     // The library.
@@ -115,6 +164,8 @@ movement hail(me: actor) {
   me.right_hand.position = (-0.25, -0.3, 0.1) m + rise*(-0.1, 0.5, 0.25) m in chest
 }
 )");
+    // A clip.
+    const Taken clip = take("hail()", "clip hail { from \"arm.keys\" }\n");
     // A callback.
     const motion::OwnMovementPtr host[] = {motion::make_host_movement(
         {.signature = {.name = "hail", .parameters = {motion::angle_parameter("up", radians(60))}},
@@ -131,9 +182,10 @@ movement hail(me: actor) {
     CHECK(keys.log_hash == log);
     CHECK(formula.log_hash == log);
     CHECK(path.log_hash == log);
+    CHECK(clip.log_hash == log);
     CHECK(callback.log_hash == log);
     // They are different movements.
-    const Taken* all[] = {&reach, &wave, &keys, &formula, &path, &callback};
+    const Taken* all[] = {&reach, &wave, &keys, &formula, &path, &clip, &callback};
     for (std::size_t i = 0; i < std::size(all); ++i) {
         for (std::size_t k = i + 1; k < std::size(all); ++k) {
             CHECK(length(all[i]->hand - all[k]->hand) > 0.01);
@@ -163,4 +215,34 @@ TEST_CASE("a callback has typed parameters, and its wrong calls are told as all 
     CHECK(tell("hail()") == "missing-argument");
     CHECK(tell("hail(2 s, ball)") == "wrong-unit");
     CHECK(tell("hale(what: ball)") == "unknown-name");
+}
+
+TEST_CASE("clips are cut, sped up, mirrored, masked, and told when they are wrong [unit]") {
+    const auto tell = [](const std::string& block) {
+        FilesWithClips files;
+        files.memory.add("scene.pup",
+                         "language 1\nscene \"s\"\nuntil 4 s\ncast { ana: mannequin }\n" + block +
+                             "\nplace p does ana.hail() tokens 1\nend { p }\n");
+        const auto scene = load(files, "scene.pup");
+        if (!scene) {
+            CHECK(scene.error().front().where.line > 0);
+            CHECK(!scene.error().front().remedy.empty());
+            return scene.error().front().code;
+        }
+        const Performed p = performed(*scene);
+        const SimTime took = p.performance->score()[0].end;
+        return std::to_string(took.ticks / kTicksPerMillisecond);
+    };
+    CHECK(tell("clip hail { from \"arm.keys\" }") == "2400");
+    CHECK(tell("clip hail { from \"arm.keys\", take \"raise\", speed 2 }") == "1200");
+    CHECK(tell("clip hail { from \"arm.keys\", cut 0.5 s .. 1.5 s, mirror, reverse }") == "1000");
+    CHECK(tell("clip hail { from \"arm.keys\", loop, only right_arm }") == "2400");
+    CHECK(tell("clip hail { from \"arm.keys\", only left_arm }") == "nothing-moves");
+    CHECK(tell("clip hail { from \"other.bvh\" }") == "cannot-read");
+    CHECK(tell("clip hail { from \"arm.keys\", take \"jump\" }") == "unknown-name");
+    CHECK(tell("clip hail { from \"arm.keys\", cut 1 s .. 9 s }") == "out-of-range");
+    CHECK(tell("clip hail { from \"arm.keys\", speed 0 }") == "out-of-range");
+    CHECK(tell("clip hail { speed 2 }") == "no-file");
+    CHECK(tell("clip hail { from 3 }") == "wrong-property");
+    CHECK(tell("clip hail { from \"arm.keys\", sped 2 }") == "unknown-name");
 }

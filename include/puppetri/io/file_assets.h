@@ -19,8 +19,7 @@ class FileAssets final : public scene::Assets {
     explicit FileAssets(scene::FileSource& files) : files_(files) {}
 
     Checked<scene::LoadedCharacter> character(const scene::CharacterRequest& request) override;
-    Checked<std::shared_ptr<const std::vector<motion::Clip>>> clips(
-        const std::string& path) override;
+    Checked<scene::LoadedClips> clips(const scene::ClipRequest& request) override;
 
  private:
     scene::FileSource& files_;

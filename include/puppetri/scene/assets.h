@@ -9,12 +9,10 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/motion/clip.h"
 
 namespace puppetri::figure {
 struct Character;
-}
-namespace puppetri::motion {
-struct Clip;
 }
 
 namespace puppetri::scene {
@@ -39,6 +37,20 @@ struct LoadedCharacter {
                                                          // shown
 };
 
+struct ClipRequest {
+    std::string path;  // resolved
+    double scale = 0;  // a length of the file times this is metres; 0: the format's own unit
+};
+
+// Tracks of joints are those of the normalised humanoid (figure/mannequin.h), whatever skeleton the
+// file has; DOFs as the file names them.
+struct LoadedClips {
+    std::vector<motion::Clip> clips;
+    double hips_height_m =
+        0;  // above the soles in the rest pose of the file's figure; 0: no figure
+    Diagnostics notes;
+};
+
 class Assets {
  public:
     virtual ~Assets() = default;
@@ -49,8 +61,7 @@ class Assets {
     virtual Checked<LoadedCharacter> character(const CharacterRequest& request) = 0;
 
     // All clips of a file (glTF, GLB, VRMA, BVH, keyframes), by the names that it gives them.
-    virtual Checked<std::shared_ptr<const std::vector<motion::Clip>>> clips(
-        const std::string& path) = 0;
+    virtual Checked<LoadedClips> clips(const ClipRequest& request) = 0;
 };
 
 }  // namespace puppetri::scene

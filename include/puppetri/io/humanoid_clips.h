@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Clips of any humanoid skeleton as clips of the normalised one (figure/mannequin.h), which every
+// figure performs: the bones are found by their names, the rest pose is brought to the T-pose, and
+// rotations are read against it.
+#pragma once
+#include <string>
+
+#include "puppetri/io/clip_file.h"
+#include "puppetri/scene/assets.h"
+
+namespace puppetri::io {
+
+// A file without a skeleton (keyframes by joint or DOF) is taken as it is; one whose skeleton is no
+// humanoid fails with what figure/fit_humanoid.h says of it, where.file being `path`.
+// Gives   keys at the times of the file's own, between them Catmull-Rom; the travel as the track of
+//         the joint hips, in metres. A warning "odd-scale" where the figure is taller than 4 m or
+//         smaller than 0.3 m.
+Checked<scene::LoadedClips> to_humanoid(ClipFile file, const std::string& path);
+
+}  // namespace puppetri::io

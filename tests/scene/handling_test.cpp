@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Picking up, handing over, embracing.
+#include <doctest/doctest.h>
+
+#include "measured.h"
+
+using namespace puppetri;
+using namespace puppetri::scene;
+
+namespace {
+
+const char* const kHandling = R"(language 1
+scene "Handling"
+until 9 s
+cast {
+  ana: mannequin { at (0, 0, 0) m }
+  rui: mannequin { at (0, 0, 0.92) m, facing 180 deg }
+  ball: sphere { diameter 22 cm, at (0, 0.11, 0.4) m }
+}
+place a does ana.pick_up(ball) tokens 1
+place b does ana.hand_over(ball, to: rui)
+place c does ana.idle(lasting: 1 s)
+place w tokens 1
+place r does rui.turn(90 deg)
+place s does rui.idle(lasting: 1 s)
+picked: a -> b
+given: b -> c
+on: c + w -> r
+stop: r -> s
+end { s }
+)";
+
+SimTime at(double t_s) { return {static_cast<std::int64_t>(t_s * kTicksPerSecond)}; }
+
+Vec3 palm(const stage::Performance& p, std::uint32_t who, int side, double t_s) {
+    static const figure::Figure figure = figure::make_mannequin(1.75);
+    figure::Pose pose;
+    p.pose({who}, at(t_s), pose);
+    std::vector<Transform> world(figure.skeleton.joints.size());
+    to_model_space(figure.skeleton, pose, world);
+    const auto i = static_cast<std::size_t>(side);
+    return (world[figure.arms[i].hand.value] * figure.arms[i].hand_from_palm).translation;
+}
+
+}  // namespace
+
+TEST_CASE("a ball is picked up off the floor, handed over, and carried on, without a jump [law]") {
+    MemoryFiles files;
+    files.add("scene.pup", kHandling);
+    const Scene scene = must(load(files, "scene.pup"));
+    const Performed p = performed(scene);
+    CHECK_MESSAGE(p.notes.empty(), told(p.notes));
+    check_good(measured(p, scene, 0), "ana");
+    check_good(measured(p, scene, 1), "rui");
+    const stage::Performance& shown = *p.performance;
+    double grasp = 0, given = 0;
+    for (const stage::StageEvent& e : shown.events()) {
+        grasp = e.name == "grasp" ? e.at.seconds() : grasp;
+        given = e.name == "hand_over" ? e.at.seconds() : given;
+    }
+    REQUIRE(grasp > 0.5);
+    REQUIRE(given > grasp);
+    CHECK(shown.holder({0}, at(grasp - 0.01)) == "floor");
+    CHECK(shown.holder({0}, at(grasp + 0.01)) == "ana.hands");
+    CHECK(shown.holder({0}, at(given - 0.01)) == "ana.hands");
+    CHECK(shown.holder({0}, at(given + 0.01)) == "rui.hands");
+    CHECK(shown.holder({0}, shown.duration()) == "rui.hands");
+    // Palms on the ball while it is held; it lies still before, and never jumps.
+    Vec3 before = shown.world_from_prop({0}, at(0)).translation;
+    for (double t = 0; t < 9; t += 1.0 / 120) {
+        const Vec3 ball = shown.world_from_prop({0}, at(t)).translation;
+        CHECK_MESSAGE(length(ball - before) < 3.0 / 120 + 1e-6, t << " s");
+        before = ball;
+        if (t < grasp) {
+            CHECK(length(ball - Vec3{0, 0.11, 0.4}) < 1e-9);
+            continue;
+        }
+        const std::uint32_t holder = t < given ? 0 : 1;
+        for (int side = 0; side < 2; ++side) {
+            CHECK(std::fabs(length(palm(shown, holder, side, t) - ball) - 0.11) < 0.005);
+        }
+    }
+    // Both have it in their hands when it changes.
+    for (int side = 0; side < 2; ++side) {
+        const Vec3 ball = shown.world_from_prop({0}, at(given)).translation;
+        CHECK(std::fabs(length(palm(shown, 0, side, given) - ball) - 0.11) < 0.01);
+        CHECK(std::fabs(length(palm(shown, 1, side, given) - ball) - 0.11) < 0.01);
+    }
+}
+
+TEST_CASE("what lies too far is not picked up, and nobody far off is handed anything [unit]") {
+    const auto notes = [](const std::string& cast, const std::string& call) {
+        MemoryFiles files;
+        files.add("scene.pup", "language 1\nscene \"s\"\nuntil 4 s\ncast {\n ana: mannequin\n" +
+                                   cast + "}\nplace p does ana." + call + " tokens 1\nend { p }\n");
+        const Scene scene = must(load(files, "scene.pup"));
+        const Performed p = performed(scene);
+        return p.notes.empty() ? std::string() : p.notes.front().code;
+    };
+    CHECK(notes(" ball: sphere { at (0, 0.11, 2) m }\n", "pick_up(ball)") == "out-of-reach");
+    CHECK(notes(" ball: sphere { at (0, 0.11, 0.4) m }\n", "pick_up(ball)") == "");
+    CHECK(notes(" rui: mannequin { at (0, 0, 3) m }\n ball: sphere { held by ana.hands }\n",
+                "hand_over(ball, to: rui)") == "out-of-reach");
+    CHECK(notes(" rui: mannequin { at (0, 0, 0.9) m }\n ball: sphere { at (0, 0.11, 3) m }\n",
+                "hand_over(ball, to: rui)") == "not-held");
+    CHECK(notes(" rui: mannequin { at (0, 0, 3) m }\n", "hug(rui)") == "out-of-reach");
+}
+
+TEST_CASE("two who embrace each other have their hands on each other's back, not inside [law]") {
+    MemoryFiles files;
+    files.add("scene.pup", R"(language 1
+scene "Embrace"
+until 5 s
+cast {
+  ana: mannequin { at (0, 0, 0) m }
+  rui: mannequin { at (0, 0, 0.37) m, facing 180 deg }
+}
+place a does ana.hug(rui) tokens 1
+place b does rui.hug(ana) tokens 1
+place c does ana.idle()
+place d does rui.idle()
+ac: a -> c
+bd: b -> d
+end { c and d }
+)");
+    const Scene scene = must(load(files, "scene.pup"));
+    const Performed p = performed(scene);
+    CHECK_MESSAGE(p.notes.empty(), told(p.notes));
+    check_good(measured(p, scene, 0), "ana");
+    check_good(measured(p, scene, 1), "rui");
+    const figure::Figure figure = figure::make_mannequin(1.75);
+    for (double t = 0.3; t < 3.6; t += 0.05) {
+        for (std::uint32_t who = 0; who < 2; ++who) {
+            figure::Pose pose;
+            p.performance->pose({1 - who}, at(t), pose);
+            std::vector<Transform> world(figure.skeleton.joints.size());
+            to_model_space(figure.skeleton, pose, world);
+            for (int side = 0; side < 2; ++side) {
+                const Vec3 hand =
+                    inverse(world[figure.upper_chest.value]) * palm(*p.performance, who, side, t);
+                // A trunk as an ellipse of 30 cm by 17 cm.
+                const double inside =
+                    hand.x * hand.x / (0.15 * 0.15) + hand.z * hand.z / (0.085 * 0.085);
+                CHECK_MESSAGE(inside > 1, t << " s: " << hand.x << " " << hand.y << " " << hand.z);
+                if (t > 1.55 && t < 1.9) {
+                    CHECK_MESSAGE(hand.z < -0.07, hand.z);
+                    CHECK_MESSAGE(hand.z > -0.17, hand.z);
+                    CHECK_MESSAGE(std::fabs(hand.x) < 0.16, hand.x);
+                }
+            }
+        }
+    }
+}
