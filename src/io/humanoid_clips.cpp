@@ -5,6 +5,7 @@
 
 #include "puppetri/figure/fit_humanoid.h"
 #include "puppetri/io/character_reader.h"
+#include "puppetri/motion/walk_cycle.h"
 
 namespace puppetri::io {
 namespace {
@@ -103,6 +104,14 @@ motion::Clip converted(const motion::Clip& clip, const Skeleton& raw,
     // The floor is where the feet come down to, whatever the zero of the capture.
     for (motion::VectorKey& key : out.translations[0].keys) {
         key.value.y -= lowest;
+    }
+    if (out.marks.empty()) {
+        for (const char* side : {"left", "right"}) {
+            const motion::FootJoints foot{std::string(side) + "Foot", std::string(side) + "Toes"};
+            for (motion::ClipMark& mark : motion::find_contacts(out, target, foot, {})) {
+                out.marks.push_back(std::move(mark));
+            }
+        }
     }
     return out;
 }

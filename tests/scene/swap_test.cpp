@@ -246,3 +246,14 @@ TEST_CASE("clips are cut, sped up, mirrored, masked, and told when they are wron
     CHECK(tell("clip hail { from 3 }") == "wrong-property");
     CHECK(tell("clip hail { from \"arm.keys\", sped 2 }") == "unknown-name");
 }
+
+TEST_CASE("the example of one net and five techniques performs them all in step [unit]") {
+    const Scene scene = example("08_greeting/greeting.pup");
+    const Performed p = performed(scene);
+    CHECK_MESSAGE(p.notes.empty(), told(p.notes));
+    CHECK(p.firings == 40);
+    for (std::uint32_t actor = 0; actor < 5; ++actor) {
+        const auto& figure = scene.play.cast.actors[actor];
+        check_good(measured(p, scene, actor, 0, 6), figure.name);
+    }
+}

@@ -13,8 +13,9 @@ namespace puppetri::io {
 // A file without a skeleton (keyframes by joint or DOF) is taken as it is; one whose skeleton is no
 // humanoid fails with what figure/fit_humanoid.h says of it, where.file being `path`.
 // Gives   keys at the times of the file's own, between them Catmull-Rom; the travel as the track of
-//         the joint hips, in metres. A warning "odd-scale" where the figure is taller than 4 m or
-//         smaller than 0.3 m.
+//         the joint hips, in metres, over the floor that its feet come down to. Where the file has
+//         no marks, when feet stand is found (motion/walk_cycle.h). A warning "odd-scale" where the
+//         figure is taller than 4 m or smaller than 0.3 m.
 Checked<scene::LoadedClips> to_humanoid(ClipFile file, const std::string& path);
 
 }  // namespace puppetri::io
