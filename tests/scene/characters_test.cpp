@@ -65,9 +65,7 @@ class OneCharacter final : public FileSource, public Assets {
         }
         return LoadedCharacter{std::make_shared<const figure::Character>(std::move(c)), {}};
     }
-    Checked<std::shared_ptr<const std::vector<motion::Clip>>> clips(const std::string&) override {
-        return Unexpected(Diagnostics{});
-    }
+    Checked<LoadedClips> clips(const ClipRequest&) override { return Unexpected(Diagnostics{}); }
 };
 
 constexpr const char* kArm =
