@@ -107,7 +107,11 @@ class ActorSampler {
     // from_origin: the root begins at the origin.
     ActorSampler(const stage::Performance& performance, std::uint32_t actor, SimTime start,
                  bool from_origin, const TakeOptions& options)
-        : performance_(performance), actor_(actor), start_(start), mode_(options.root) {
+        : performance_(performance),
+          actor_(actor),
+          start_(start),
+          mode_(options.root),
+          hips_(hips_of(performance.actors()[actor])) {
         performance.pose({actor}, start, pose_);
         PUP_REQUIRE(!pose_.parent_from_joint.empty());
         PUP_REQUIRE(pose_.parent_from_joint.size() ==
@@ -123,7 +127,7 @@ class ActorSampler {
         actor.name = view.name;
         const bool a_pose = rest == RestPose::kA && !view.own_rest;
         actor.skeleton = a_pose ? with_a_pose(*view.skeleton) : *view.skeleton;
-        actor.hips = view.hips;
+        actor.hips = hips_;
         if (view.mesh != nullptr) {
             actor.mesh = a_pose ? rebound(*view.mesh, *view.skeleton, actor.skeleton) : *view.mesh;
         }
@@ -137,8 +141,8 @@ class ActorSampler {
         performance_.pose({actor_}, start_ + at, pose_);
         pose_.parent_from_joint[0] = file_from_world_ * pose_.parent_from_joint[0];
         const stage::ActorView& view = performance_.actors()[actor_];
-        apply_root_mode(mode_, *view.skeleton, view.hips.valid(),
-                        file_from_world_ * world_first_root_, pose_.parent_from_joint);
+        apply_root_mode(mode_, *view.skeleton, hips_.valid(), file_from_world_ * world_first_root_,
+                        pose_.parent_from_joint);
         return pose_.parent_from_joint;
     }
 
@@ -146,7 +150,13 @@ class ActorSampler {
     const stage::Performance& performance_;
     std::uint32_t actor_ = 0;
     SimTime start_;
+    // Who does not tell has them by their name.
+    static figure::JointIndex hips_of(const stage::ActorView& view) {
+        return view.hips.valid() || view.own_rest ? view.hips : view.skeleton->find("hips");
+    }
+
     RootMode mode_ = RootMode::kMotion;
+    figure::JointIndex hips_;
     Transform world_first_root_, file_from_world_;
     figure::Pose pose_;
 };
