@@ -147,14 +147,21 @@ struct JoinRule::Data {
         return body + "|" + of(s.before) + "|" + of(s.after);
     }
     mutable std::map<std::uint32_t, std::string> keys_, bodies_;  // once made
-    std::string fault_words(const Succession& s, SimTime at, const motion::JoinFault& f,
-                            const figure::Figure& figure) const {
-        const std::string ratio =
-            f.unit[0] == '\0' ? " times either side" : std::string(" ") + f.unit;
-        return "when " + words(s) + " begins at " + number_to_text_fixed(at.seconds(), 3) +
-               " s, the " + f.quantity + " of " + figure.skeleton.joints[f.joint.value].name +
-               (f.unit[0] == '\0' ? " is " : " jumps by ") + number_to_text_fixed(f.value, 3) +
-               ratio + " (at most " + number_to_text(f.limit) + ")";
+    // A join that is out of the limits.
+    struct Bad {
+        Succession succession;
+        SimTime at;
+        motion::JoinFault fault;
+        std::string joint;
+    };
+    std::string fault_words(const Bad& bad) const {
+        const motion::JoinFault& f = bad.fault;
+        const bool is_ratio = f.unit[0] == '\0';
+        return "when " + words(bad.succession) + " begins at " +
+               number_to_text_fixed(bad.at.seconds(), 3) + " s, the " + f.quantity + " of " +
+               bad.joint + (is_ratio ? " is " : " jumps by ") + number_to_text_fixed(f.value, 3) +
+               (is_ratio ? " times either side" : std::string(" ") + f.unit) + " (at most " +
+               number_to_text(f.limit) + ")";
     }
 
     // ---- successions ----
@@ -324,13 +331,6 @@ struct JoinRule::Data {
         }
     }
 
-    // A join that is out of the limits.
-    struct Bad {
-        Succession succession;
-        SimTime at;
-        motion::JoinFault fault;
-    };
-
     // Measures what is open and has been seen; a bad one is given.
     std::optional<Bad> measure(Running& r, State& state) const {
         std::vector<Succession> left;
@@ -360,7 +360,7 @@ struct JoinRule::Data {
             ++state.joins;
             const motion::JoinFault fault = motion::fault_of(m, book.limits);
             if (fault.quantity != nullptr) {
-                bad = Bad{s, at->second->at, fault};
+                bad = Bad{s, at->second->at, fault, r.run.joint_of(s, fault)};
                 left.push_back(s);
             } else {
                 book.entries[k] = {m};
@@ -398,7 +398,7 @@ struct JoinRule::Data {
                 motion::fault_of(r.run.measure(s, book.limits), book.limits);
             ++out.joins;
             if (fault.quantity != nullptr) {
-                out.bad = Bad{s.succession, s.at, fault};
+                out.bad = Bad{s.succession, s.at, fault, r.run.joint_of(s.succession, fault)};
                 return out;
             }
         }
@@ -478,14 +478,15 @@ struct JoinRule::Data {
         for (const JoinRun::Seen& s : seen) {
             if (s.firing == w.steps.size() && all.lanes[s.succession.lane].actor == actor) {
                 run.look_beyond(s.at);
-                return {s.succession, s.at,
-                        motion::fault_of(run.measure(s, book.limits), book.limits)};
+                const motion::JoinFault fault =
+                    motion::fault_of(run.measure(s, book.limits), book.limits);
+                return {s.succession, s.at, fault, run.joint_of(s.succession, fault)};
             }
         }
         return {};
     }
 
-    bool refute(const Bad& bad, std::uint64_t number, std::uint32_t actor, Verdict& v) const {
+    bool refute(const Bad& bad, std::uint64_t number, Verdict& v) const {
         auto witness = witness_of(bad, number, v.rule);
         if (!witness) {
             v.reason =
@@ -494,14 +495,13 @@ struct JoinRule::Data {
                 words(bad.succession);
             return false;
         }
-        refuted(bad, actor, std::move(*witness), v);
+        refuted(bad, std::move(*witness), v);
         return true;
     }
-    void refuted(const Bad& bad, std::uint32_t actor, Witness witness, Verdict& v) const {
-        const figure::Figure figure = figure::make_mannequin(play.cast.actors[actor].height_m);
+    void refuted(const Bad& bad, Witness witness, Verdict& v) const {
         v.answer = Answer::kRefuted;
         v.method = "a run on the stage";
-        v.reason = fault_words(bad.succession, bad.at, bad.fault, figure);
+        v.reason = fault_words(bad);
         witness.says = v.reason;
         v.witness = std::move(witness);
         const std::uint32_t item = bad.succession.after;
@@ -587,7 +587,7 @@ struct JoinRule::Data {
             return Found::kGood;
         }
         bad.succession = s;
-        refuted(bad, actor, std::move(*caught.witness), v);
+        refuted(bad, std::move(*caught.witness), v);
         return Found::kBad;
     }
 
@@ -615,7 +615,7 @@ struct JoinRule::Data {
         if (complete && acyclic(*graph) && closed()) {
             if (const auto whole = only_run(actor, run_of_luck(0))) {
                 if (whole->bad) {
-                    return refute(*whole->bad, 0, actor, v);
+                    return refute(*whole->bad, 0, v);
                 }
                 v.answer = Answer::kProved;
                 v.method = "its only run";
@@ -640,7 +640,7 @@ struct JoinRule::Data {
             Running& run = run_of_luck(i);
             play_on(run, state);
             if (const auto bad = measure(run, state)) {
-                return refute(*bad, i, actor, v);
+                return refute(*bad, i, v);
             }
         }
         if (complete) {
@@ -658,6 +658,10 @@ struct JoinRule::Data {
                 state.joins += found == Found::kGood ? 1 : 0;
                 state.open.erase(state.open.begin() + static_cast<std::ptrdiff_t>(k));
             }
+        }
+        if (!state.open.empty() && out_of_time()) {
+            v.reason = "the time for looking at joins was used up";
+            return false;
         }
         if (!state.open.empty()) {
             v.reason = "no run was found that shows " + words(state.open.front()) +

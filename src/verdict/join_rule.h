@@ -35,7 +35,6 @@ class JoinRule {
 
     struct Limits {
         double seconds = 1;  // of playing and measuring
-        std::uint32_t outside_events = ~std::uint32_t{0};
         const std::atomic<bool>* cancelled = nullptr;
     };
     // Tries to answer for this figure with what is known so far: successions that invariants or the

@@ -221,6 +221,13 @@ motion::JoinMeasures JoinRun::measure(const Seen& seen, const motion::JoinLimits
                                 &limits);
 }
 
+std::string JoinRun::joint_of(const proof::Succession& succession,
+                              const motion::JoinFault& fault) const {
+    const motion::ActorIndex actor{lanes_.lanes[succession.lane].actor};
+    return fault.quantity == nullptr ? std::string()
+                                     : stage_.figure(actor).skeleton.joints[fault.joint.value].name;
+}
+
 std::vector<Witness::Step> JoinRun::steps() const {
     std::vector<Witness::Step> out;
     for (const Fired& f : fired_) {

@@ -59,6 +59,8 @@ class JoinRun {
     void look_beyond(SimTime at);
     // Needs  look_beyond.
     motion::JoinMeasures measure(const Seen& seen, const motion::JoinLimits& limits);
+    // The joint of a fault of that figure.
+    std::string joint_of(const proof::Succession& succession, const motion::JoinFault& fault) const;
 
  private:
     bool step(SimTime until);

@@ -481,7 +481,6 @@ class Prover {
             ++actor;
         }
         const JoinRule::Limits limits{.seconds = std::clamp(left() * 0.1, 0.0, 5.0),
-                                      .outside_events = options_.outside_events,
                                       .cancelled = options_.budget.cancelled};
         if (method == Method::kReadiness && !part.has(method) &&
             joins_->judge(actor, nullptr, limits, w.verdict)) {

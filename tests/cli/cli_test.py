@@ -390,6 +390,18 @@ class Prove(Cli):
         # No time at all: what structure does not prove is unknown.
         self.assertEqual(self.prove(self.DUET, "--rule", "goes_on", "--time", "0s").returncode, 3)
 
+    def test_long_lines_are_cut_short_unless_all_is_asked_for(self):
+        short = self.prove(EXAMPLES / "03_ball/ball.pup").stdout
+        full = self.prove(EXAMPLES / "03_ball/ball.pup", "-v").stdout
+        self.assertIn(" + ... + ", short)
+        self.assertNotIn(" + ... + ", full)
+        # Lines below a rule keep to the width; what `-v` tells of a place is told of several at once.
+        rest = [line for line in short.splitlines() if not line.startswith(("PROVED", "REFUTED", "UNKNOWN"))]
+        self.assertLessEqual(max(len(line) for line in rest), 100)
+        self.assertIn("a.flight, b.flight: its movement takes", short)
+        self.assertIn("place a.flight: its movement takes", full)
+        self.assertIn("puppetri explain", self.prove(self.DUET).stdout)
+
     def test_a_witness_replays_runs_and_exports(self):
         done = self.prove(self.DUET, "--json")
         answer = {rule["rule"]: rule for rule in json.loads(done.stdout)["rules"]}
