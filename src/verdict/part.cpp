@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "part.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "puppetri/net/tables.h"
+#include "puppetri/proof/coverability.h"
 #include "puppetri/proof/readiness.h"
 #include "puppetri/proof/state_classes.h"
 #include "puppetri/proof/timed_exact.h"
@@ -77,8 +79,8 @@ std::uint32_t Part::add(Asked asked) {
     return static_cast<std::uint32_t>(asked_.size() - 1);
 }
 
-const proof::TimedGraph* Part::graph(Method method, const proof::Budget& budget,
-                                     std::uint32_t outside_events, std::string& why) {
+const proof::TimedGraph* Part::made(Method method, const proof::Budget& budget,
+                                    std::uint32_t outside_events, std::string& why) {
     const auto i = static_cast<std::size_t>(method);
     if (!graphs_[i] && why_[i].empty()) {
         const proof::GraphRequest request{.net = *net_,
@@ -127,6 +129,38 @@ std::vector<std::uint32_t> Part::in_whole(std::vector<std::uint32_t> firings) co
     return firings;
 }
 
-void Part::forget(Method method) { graphs_[static_cast<std::size_t>(method)].reset(); }
+const proof::TimedGraph* Part::first_look(Method method, const GraphLimits& limits,
+                                          std::string& why) {
+    constexpr std::uint64_t kFew = 20'000;
+    proof::Budget budget = limits.budget;
+    if (method == Method::kReadiness || grows) {
+        const bool counts = net_->paced() && net_->declarations().data.empty();
+        budget.states = std::min(budget.states, counts ? limits.first_look_states : kFew);
+    }
+    return made(method, budget, limits.outside_events, why);
+}
+
+const proof::TimedGraph* Part::whole_graph(Method method, const GraphLimits& limits,
+                                           std::string& why) {
+    const auto i = static_cast<std::size_t>(method);
+    const proof::TimedGraph* graph = first_look(method, limits, why);
+    if (graph == nullptr || graph->graph.ended != proof::Ended::kStates || grows ||
+        all_states_[i]) {
+        return graph;
+    }
+    proof::Budget little = limits.budget;
+    little.seconds = std::min(little.seconds / 4, 2.0);
+    const proof::Plain plain = proof::plain(*net_);
+    const proof::BoundednessAnswer answer =
+        plain.unsound ? proof::BoundednessAnswer{} : proof::boundedness(plain.net, little);
+    if (answer.kind == proof::BoundednessAnswer::kUnbounded) {
+        grows = true;
+        grows_where = net_->place(net::PlaceIndex{answer.place}).path;
+        return graph;
+    }
+    graphs_[i].reset();
+    all_states_[i] = true;
+    return made(method, limits.budget, limits.outside_events, why);
+}
 
 }  // namespace puppetri::verdict

@@ -19,6 +19,12 @@ namespace puppetri::verdict {
 enum class Method : std::uint8_t { kReadiness, kExact, kClasses };
 const char* name_of(Method method);
 
+struct GraphLimits {
+    proof::Budget budget;
+    std::uint32_t first_look_states = 0;  // of nets without time
+    std::uint32_t outside_events = 0;
+};
+
 class Part {
  public:
     // The whole net. Theatre and host outlive it.
@@ -35,14 +41,14 @@ class Part {
     const Obligation& obligation(std::uint32_t i) const { return obligations_[i]; }
     std::uint32_t rules() const { return static_cast<std::uint32_t>(asked_.size()); }
 
-    // Null: the method does not treat this net, or is not to be tried; `why` says so.
-    const proof::TimedGraph* graph(Method method, const proof::Budget& budget,
-                                   std::uint32_t outside_events, std::string& why);
+    // A first look, at few states, where a graph may be large.
+    // Null: the method does not treat this net; `why` says so.
+    const proof::TimedGraph* first_look(Method method, const GraphLimits& limits, std::string& why);
+    // What grows without end even without time will hardly end with it: then the first look is all.
+    const proof::TimedGraph* whole_graph(Method method, const GraphLimits& limits,
+                                         std::string& why);
     GraphView view(Method method) const;
     bool has(Method method) const { return graphs_[static_cast<std::size_t>(method)].has_value(); }
-    void forget(Method method);
-    // The graph is not only a first look at few states.
-    bool& all_states(Method method) { return all_states_[static_cast<std::size_t>(method)]; }
     const HostLowering* host() const { return host_; }
 
     // Found on the way: without time this place grows without end.
@@ -56,6 +62,8 @@ class Part {
 
  private:
     Part() = default;
+    const proof::TimedGraph* made(Method method, const proof::Budget& budget,
+                                  std::uint32_t outside_events, std::string& why);
     std::optional<net::Net> own_;
     const net::Net* net_ = nullptr;
     const Theatre* theatre_ = nullptr;

@@ -412,37 +412,16 @@ class Prover {
         }
         return true;
     }
-    // A first look, at few states, where a graph may be large.
-    const proof::TimedGraph* few_of(Part& part, Method method, std::string& why) {
-        constexpr std::uint64_t kFew = 20'000;
-        proof::Budget b = budget(method == Method::kReadiness ? 0.4 : 0.6);
-        if (method == Method::kReadiness || part.grows) {
-            const bool counts = part.net().paced() && part.net().declarations().data.empty();
-            b.states = std::min(b.states, counts ? options_.first_look_states : kFew);
-        }
-        return part.graph(method, b, options_.outside_events, why);
+    GraphLimits limits_of(Method method) const {
+        return {.budget = budget(method == Method::kReadiness ? 0.4 : 0.6),
+                .first_look_states = options_.first_look_states,
+                .outside_events = options_.outside_events};
     }
-    // What grows without end even without time will hardly end with it: not all is spent on it.
-    const proof::TimedGraph* graph_of(Part& part, Method method, std::string& why) {
-        const proof::TimedGraph* graph = few_of(part, method, why);
-        if (graph == nullptr || graph->graph.ended != proof::Ended::kStates || part.grows ||
-            part.all_states(method)) {
-            return graph;
-        }
-        proof::Budget little = budget(0.1);
-        little.seconds = std::min(little.seconds, 2.0);
-        const proof::Plain plain = proof::plain(part.net());
-        const proof::BoundednessAnswer answer =
-            plain.unsound ? proof::BoundednessAnswer{} : proof::boundedness(plain.net, little);
-        if (answer.kind == proof::BoundednessAnswer::kUnbounded) {
-            part.grows = true;
-            part.grows_where = part.net().place(net::PlaceIndex{answer.place}).path;
-            return graph;
-        }
-        part.forget(method);
-        part.all_states(method) = true;
-        return part.graph(method, budget(method == Method::kReadiness ? 0.4 : 0.6),
-                          options_.outside_events, why);
+    const proof::TimedGraph* few_of(Part& part, Method method, std::string& why) const {
+        return part.first_look(method, limits_of(method), why);
+    }
+    const proof::TimedGraph* graph_of(Part& part, Method method, std::string& why) const {
+        return part.whole_graph(method, limits_of(method), why);
     }
 
     // The finding of one method, and what it cost.
