@@ -121,6 +121,13 @@ class Logic {
             by_diagrams(session_.quick_symbolic(), 0.02, 1);
         }
         if (!open().empty() && !session_.too_many_to_visit()) {
+            by_graph(0.3, kSome);
+        }
+        // A machine that was busy may have kept the quick look from an answer.
+        if (!open().empty() && !session_.out_of_time()) {
+            by_diagrams(session_.symbolic(0.2), 0.1, 1e9);
+        }
+        if (!open().empty() && !session_.too_many_to_visit()) {
             by_graph(0.6, PlainSession::kVisited);
         }
         if (!open().empty() && !session_.out_of_time()) {
@@ -167,7 +174,7 @@ class Logic {
         }
     }
 
-    static constexpr std::uint64_t kGlance = 100'000;  // states
+    static constexpr std::uint64_t kGlance = 100'000, kSome = 3'000'000;  // states
 
     void by_graph(double fraction, std::uint64_t states) {
         const std::vector<std::uint32_t> open_now = open();
@@ -187,6 +194,9 @@ class Logic {
         budget.bytes = budget.bytes / 5 * 3;  // the rest for predecessors and labels
         const proof::PlainGraph made = proof::build_graph(session_.plain(), atoms, nullptr, budget);
         const proof::Graph& graph = made.graph;
+        if (graph.ended != proof::Ended::kDone && states > kGlance) {
+            return;  // a part shows what a glance has shown already, at a greater cost
+        }
         const net::Rows<std::uint32_t> backwards =
             std::any_of(open_now.begin(), open_now.end(),
                         [&](std::uint32_t i) { return !is_linear(questions_[i].formula); })
