@@ -83,6 +83,7 @@ class LastBegun {
 
     std::vector<Succession> collect() {
         std::vector<Succession> out;
+        std::size_t united = 0;
         for (std::uint32_t s = 0; s < r_.graph.size(); ++s) {
             if (std::all_of(row(s), row(s) + words_, [](std::uint64_t w) { return w == 0; })) {
                 continue;  // no path comes here
@@ -104,8 +105,9 @@ class LastBegun {
                     }
                 }
             }
-            if (out.size() > 4096) {
+            if (out.size() > 2 * united + 4096) {
                 unite(out);
+                united = out.size();
             }
         }
         unite(out);
@@ -123,6 +125,14 @@ class LastBegun {
 };
 
 }  // namespace
+
+std::uint64_t bytes_for_successions(const SuccessionRequest& request) {
+    std::uint64_t words = 0;
+    for (const std::uint32_t items : request.items) {
+        words += (items + 1 + 63) / 64;
+    }
+    return words * sizeof(std::uint64_t) * request.graph.size();
+}
 
 std::vector<Succession> successions(const SuccessionRequest& request) {
     return LastBegun(request).run();

@@ -598,8 +598,13 @@ struct JoinRule::Data {
         cancelled = limits.cancelled;
         State& state = states[actor];
         const proof::Graph* graph = view != nullptr ? &view->timed->graph : nullptr;
+        constexpr std::uint64_t kMostBytes = std::uint64_t{512} << 20;
         const bool complete =
-            graph != nullptr && graph->over && graph->ended == proof::Ended::kDone;
+            graph != nullptr && graph->over && graph->ended == proof::Ended::kDone &&
+            proof::bytes_for_successions({.graph = *graph,
+                                          .begins = lanes.begins,
+                                          .items = lanes.items,
+                                          .initially = lanes.initially}) <= kMostBytes;
         if (complete) {
             v.states = graph->size();
             v.edges = graph->edges.items.size();

@@ -35,5 +35,7 @@ struct Succession {
 //        activities on one lane may have begun them in any order.
 // Cost   a few passes over the edges; a bit per state and activity.
 std::vector<Succession> successions(const SuccessionRequest& request);
+// What it will hold.
+std::uint64_t bytes_for_successions(const SuccessionRequest& request);
 
 }  // namespace puppetri::proof
