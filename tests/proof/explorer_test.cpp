@@ -292,6 +292,46 @@ PlainNet enlarged(const PlainNet& net, std::uint32_t factor, std::uint32_t place
     return out;
 }
 
+TEST_CASE("a state comes to need another word while threads are at it [law]") {
+    // 33 places fill to three tokens, one after the other; no invariant bounds them. Beside them a
+    // counter goes up and down, another up: 100 * 16 * 16 markings, in the end of more than 64
+    // bits.
+    constexpr std::uint32_t kSteps = 33, kUp = kSteps, kCount = kSteps + 1;
+    PlainNet net;
+    net.initial.assign(kSteps + 2, 0);
+    const auto add = [&](net::Rows<net::Weighted>& rows, std::vector<net::Weighted> row) {
+        rows.items.insert(rows.items.end(), row.begin(), row.end());
+        rows.starts.push_back(static_cast<std::uint32_t>(rows.items.size()));
+    };
+    const auto transition = [&](std::vector<net::Weighted> takes, std::vector<net::Weighted> gives,
+                                std::vector<net::Weighted> reads,
+                                std::vector<net::Weighted> unless) {
+        add(net.takes, std::move(takes));
+        add(net.gives, std::move(gives));
+        add(net.reads, std::move(reads));
+        add(net.unless, std::move(unless));
+        net.level.push_back(0);
+        net.optional.push_back(0);
+    };
+    for (std::uint32_t k = 0; k < kSteps; ++k) {
+        transition({}, {{k, 1}},
+                   k > 0 ? std::vector<net::Weighted>{{k - 1, 3}} : std::vector<net::Weighted>{},
+                   {{k, 3}});
+    }
+    transition({}, {{kUp, 1}}, {}, {{kUp, 15}});
+    transition({}, {{kCount, 1}}, {}, {{kCount, 15}});
+    transition({{kCount, 1}}, {}, {}, {});
+    for (unsigned threads = 1; threads <= 4; ++threads) {
+        Budget budget;
+        budget.threads = threads;
+        const Exploration e = explore(net, {}, budget);
+        CHECK(e.complete);
+        CHECK(e.states == 100 * 16 * 16);
+        CHECK(e.edges == 99 * 256 + 100 * (15 * 16) * 3);
+        CHECK(e.bits_per_state > 64);
+    }
+}
+
 TEST_CASE("large counts, many places and many transitions change nothing but the numbers [law]") {
     struct Size {
         std::uint32_t factor, places, transitions;
