@@ -162,12 +162,12 @@ struct ProvingProgress::Data {
     bool drawn = false;
 };
 
-namespace {
-
 double clock_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
+
+namespace {
 
 std::string short_number(double x) {
     return x >= 1e9   ? number_to_text_fixed(x / 1e9, 1) + " G"

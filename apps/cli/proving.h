@@ -52,6 +52,9 @@ std::vector<verdict::Verdict> prove_subject(const Subject& subject,
 // FOLDER/RULE.witness.json, with odd characters of the rule's path replaced.
 std::string witness_path(const std::string& folder, const std::string& rule);
 
+// Seconds of a clock that only goes on.
+double clock_s();
+
 // "1.2 s", "3 ms".
 std::string seconds_text(double seconds);
 

@@ -66,6 +66,9 @@ class Collector {
         for (const net::Rule& r : draft_.rules) {
             use(NetFeature::kStatements, "rule " + r.path, r.where);
         }
+        for (const net::TimeQuestion& q : draft_.questions) {
+            use(NetFeature::kStatements, "question " + q.path, q.where);
+        }
         for (const net::NamedState& s : draft_.states) {
             use(NetFeature::kStatements, "state " + s.path, s.where);
         }

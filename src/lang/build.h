@@ -27,6 +27,7 @@ class Builder {
     EventFile event_file(std::uint32_t node);
     Use use(std::uint32_t node);
     Rule rule(std::uint32_t node);
+    Question question(std::uint32_t node);
     For loop(std::uint32_t node);  // this and the following without their bodies
     Net net(std::uint32_t node);
     Block block(std::uint32_t node);

@@ -102,6 +102,19 @@ Rule Builder::rule(std::uint32_t node) {
     return out;
 }
 
+Question Builder::question(std::uint32_t node) {
+    Question out;
+    out.name = name(child(node, NodeKind::kName));
+    out.caption = caption(node);
+    out.span = span(node);
+    const std::uint32_t form = child(node, NodeKind::kForm);
+    out.about = child_expr(form);
+    out.kind = first(form).kind == Kind::kShortest  ? QuestionKind::kShortestTime
+               : first(form).kind == Kind::kLongest ? QuestionKind::kLongestTime
+                                                    : QuestionKind::kCycleTime;
+    return out;
+}
+
 For Builder::loop(std::uint32_t node) {
     For out;
     out.variable = name(child(node, NodeKind::kName));

@@ -29,6 +29,8 @@ constexpr std::array kForms = {
     Form{Kind::kEvents, "events from \"FILE\""},
     Form{Kind::kUse, "use NET(ARGUMENTS) as NAME"},
     Form{Kind::kRule, "rule NAME \"caption\" never A and B, or A leads to B within 2 s, ..."},
+    Form{Kind::kQuestionWord,
+         "question NAME \"caption\" shortest time to A, or longest time to A, or cycle time of A"},
     Form{Kind::kFor, "for NAME in (a, b) { ... }, or for NAME in 1 .. 5 { ... }"},
     Form{Kind::kNet, "net NAME(PARAMETER: TYPE, ...) { ... }"},
     Form{Kind::kCast, "cast { NAME: mannequin { height 1.75 m } }"},

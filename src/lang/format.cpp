@@ -345,6 +345,7 @@ class Formatter {
             case Kind::kPlace:
             case Kind::kUse:
             case Kind::kRule:
+            case Kind::kQuestionWord:
                 return kind_at(first);
             default:
                 return Kind::kEndOfFile;
@@ -384,6 +385,7 @@ class Formatter {
             case Kind::kUse:  // use NET(...) | as NAME
                 return kind == Kind::kAs ? at_least(1) : column;
             case Kind::kRule:  // rule NAME | caption | form
+            case Kind::kQuestionWord:
                 if (first_string) {
                     return at_least(1);
                 }
@@ -445,10 +447,11 @@ class Formatter {
         }
     }
 
-    // Behind `place NAME` or `rule NAME`, the name with its indices included.
+    // Behind `place NAME`, `rule NAME` or `question NAME`, the name with its indices included.
     bool after_head(std::size_t begin, std::size_t i) const {
         std::size_t at = begin;
-        while (at < i && pieces_[at].kind != Kind::kPlace && pieces_[at].kind != Kind::kRule) {
+        while (at < i && pieces_[at].kind != Kind::kPlace && pieces_[at].kind != Kind::kRule &&
+               pieces_[at].kind != Kind::kQuestionWord) {
             ++at;
         }
         ++at;  // the name
@@ -492,7 +495,7 @@ class Formatter {
     static std::size_t gap_before(Kind table, int column) {
         const bool clause = (table == Kind::kPlace && column >= 2) ||
                             (table == Kind::kArrow && column >= 3) ||
-                            (table == Kind::kRule && column >= 2);
+                            ((table == Kind::kRule || table == Kind::kQuestionWord) && column >= 2);
         return clause ? 2 : 1;
     }
 

@@ -310,6 +310,12 @@ struct rule_form : sor<
     whole<tok<K::kAfter>, expr, tok<K::kNo>, expr, tok<K::kUntil>, expr>,
     seq<binary_form, rule_end>> {};
 
+// ---- questions
+
+struct question_form : sor<
+    form<sor<tok<K::kShortest>, tok<K::kLongest>>, tok<K::kTime>, tok<K::kTo>, expr>,
+    form<tok<K::kCycle>, tok<K::kTime>, tok<K::kOf>, expr>> {};
+
 // ---- statements
 
 template <NodeKind S, class... R> struct statement : node<S, R..., finish> {};
@@ -334,6 +340,7 @@ struct event : statement<N::kEvent, is_public, opt<tok<K::kConsumed>>, tok<K::kE
 struct events : statement<N::kEvents, tok<K::kEvents>, tok<K::kFrom>, text> {};
 struct use : statement<N::kUse, tok<K::kUse>, path, opt<arguments>, opt<tok<K::kAs>, name>> {};
 struct rule : node<N::kRule, tok<K::kRule>, name, opt<caption>, rule_form> {};
+struct question : statement<N::kQuestion, tok<K::kQuestionWord>, name, opt<caption>, question_form> {};
 
 // What opens a block ends before its brace.
 struct loop : statement<N::kFor, tok<K::kFor>, name, tok<K::kIn>, expr> {};
@@ -372,7 +379,7 @@ struct import : statement<N::kImport, tok<K::kImport>, list<name, K::kComma>, to
 // a brace follows.
 struct transition_ahead : ahead<is_public, name, opt<caption>, tok<K::kColon>> {};
 struct any_statement : sor<seq<transition_ahead, transition>, place, state, data, token_type, event, events, use, rule,
-                           loop, net, cast, ends, enumeration, header, import, block> {};
+                           question, loop, net, cast, ends, enumeration, header, import, block> {};
 
 struct value : sor<expr, node<N::kSymbol, sor<tok<K::kArrow>, tok<K::kColon>, tok<K::kAssign>, tok<K::kEqual>>>> {};
 struct property : statement<N::kProperty, path, star<value>> {};

@@ -38,7 +38,7 @@ enum class NodeKind : std::uint8_t {
     kDefault,    // kExpr
     kGroup,      // of initial tokens: kExpr, kBinding..., perhaps the token `ready`
     kClause,     // by its first token
-    kForm,       // of a rule, by its first token unless it begins with a kExpr
+    kForm,       // of a rule or a question, by its first token unless it begins with a kExpr
     kSettled,
     // Statements
     kPlace,
@@ -51,6 +51,7 @@ enum class NodeKind : std::uint8_t {
     kEvents,
     kUse,
     kRule,
+    kQuestion,
     kFor,
     kNet,
     kCast,

@@ -325,6 +325,7 @@ bool forgets_bracket(const Token& first, const Token& second) {
     switch (first.kind) {
         case Kind::kPlace:
         case Kind::kRule:
+        case Kind::kQuestionWord:
         case Kind::kNet:
         case Kind::kUse:
         case Kind::kEvent:
@@ -399,6 +400,7 @@ bool begins_statement(Kind kind) {
         case Kind::kEvents:
         case Kind::kUse:
         case Kind::kRule:
+        case Kind::kQuestionWord:
         case Kind::kFor:
         case Kind::kNet:
         case Kind::kCast:

@@ -413,6 +413,9 @@ class Parser {
             case NodeKind::kRule:
                 out.rules.push_back(b.rule(0));
                 break;
+            case NodeKind::kQuestion:
+                out.questions.push_back(b.question(0));
+                break;
             case NodeKind::kHeader:
                 b.header(0, file_.header);
                 break;

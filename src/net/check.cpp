@@ -562,6 +562,9 @@ class Check {
                 check_formula(f, r.where, "rule " + r.path);
             }
         }
+        for (const TimeQuestion& q : net_.questions) {
+            check_formula(q.about, q.where, "question " + q.path);
+        }
         for (const FinalMarkingDraft& f : net_.finals) {
             check_formula(f.condition, f.where, "end");
             for (const Formula::Node& n : f.condition.nodes) {

@@ -35,6 +35,7 @@ ClassBuilder::ClassBuilder(const GraphRequest& request, bool observed)
     : TimedBuilder(request, ClockForm::kClasses, "state classes"), observed_(observed) {
     check(request);
     states_ = graph_.states.get();
+    states_->observed = observed;
     zone_ = passed_ = Zone(observed ? 1 : 0);
     driver_->choose_with(
         [](void* self, Driver& driver, std::vector<std::int64_t>& over) {
@@ -307,7 +308,7 @@ bool ClassBuilder::encode(Driver& driver, const Driver::Step& step,
         variables[number] = static_cast<std::uint32_t>(i);
         track_.numbers.push_back(number);
     }
-    if (!keep(driver, track_.zone)) {
+    if (!keep(driver, step, track_.zone)) {
         return false;
     }
     states_->encode(driver, out, &variables);
@@ -315,7 +316,19 @@ bool ClassBuilder::encode(Driver& driver, const Driver::Step& step,
     for (const std::int64_t b : track_.zone.bounds()) {
         write_count(states_->codec.intern(b), out);
     }
+    if (mark_) {
+        out.push_back(kMark);
+    }
     return true;
+}
+
+bool ClassBuilder::is_at(const Driver::Step& step, std::span<const std::uint8_t> state) {
+    std::vector<std::uint8_t> bytes;
+    if (!encode(*driver_, step, bytes)) {
+        return false;
+    }
+    const bool marked = state.size() == bytes.size() + 1 && state.back() == kMark;
+    return std::equal(bytes.begin(), bytes.end(), state.begin(), state.end() - (marked ? 1 : 0));
 }
 
 }  // namespace puppetri::proof

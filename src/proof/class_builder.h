@@ -31,29 +31,31 @@ class ClassBuilder : public TimedBuilder {
     // Goes along in somebody else's graph, which need not be changed.
     void follow(const TimedGraph& graph);
     void stand_in(std::uint32_t state) { enter(state); }
-    // The string of what the step has reached; false: no time allows it.
-    bool string_of(const Driver::Step& step, std::vector<std::uint8_t>& out) {
-        return encode(*driver_, step, out);
-    }
+    // Whether the step has reached the state of this string.
+    bool is_at(const Driver::Step& step, std::span<const std::uint8_t> state);
 
  protected:
     void enter(std::uint32_t state) override;
     bool encode(Driver& driver, const Driver::Step& step, std::vector<std::uint8_t>& out) override;
     std::pair<std::int64_t, std::int64_t> ticks(const Driver::Step& step) override;
     bool coincidental(Driver& driver) override;
-    // A reached class, before it is kept. False: it is not wanted.
-    virtual bool keep(Driver& driver, const Zone& zone) {
-        (void)driver, (void)zone;
+    // A reached class, before it is kept; may be changed. False: it is not wanted.
+    virtual bool keep(Driver& driver, const Driver::Step& step, Zone& zone) {
+        (void)driver, (void)step, (void)zone;
         return true;
     }
 
+    // Set by keep(): such states are told from others by a last byte.
+    bool mark_ = false;
+    static constexpr std::uint8_t kMark = 0xFE;  // no string without it ends like this
+
     const bool observed_;
+    Zone zone_;  // of the state that is expanded: variable k waits under the number k
 
  private:
     bool choose(Driver& driver, std::vector<std::int64_t>& over);
     void check(const GraphRequest& request);
-    Zone zone_;    // of the state that is expanded: variable k waits under the number k
-    Zone passed_;  // the same after the pass that was chosen
+    Zone passed_;  // that of zone_ after the pass that was chosen
     std::int64_t low_ = 0, high_ = 0;
     Track track_;
     TimedGraph::States* states_ = nullptr;

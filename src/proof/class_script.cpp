@@ -133,8 +133,27 @@ struct AtLeast {
     std::int64_t ticks = 0;
 };
 
-// The earliest times of all instants in multiples of `unit`. False: there are none.
-bool solve(Story& story, std::int64_t unit) {
+// How late instant `last` can be: the shortest way to it against the rules. Nothing: for ever.
+std::optional<std::int64_t> latest(const std::vector<AtLeast>& rules, std::uint32_t instants) {
+    constexpr std::int64_t kNever = SimTime::never().ticks;
+    std::vector<std::int64_t> at_most(instants, kNever);
+    at_most[0] = 0;
+    bool more = true;
+    for (std::uint32_t round = 0; more && round <= instants; ++round) {
+        more = false;
+        for (const AtLeast& r : rules) {
+            if (at_most[r.to] != kNever && at_most[r.to] - r.ticks < at_most[r.from]) {
+                at_most[r.from] = at_most[r.to] - r.ticks;
+                more = true;
+            }
+        }
+    }
+    return more || at_most.back() == kNever ? std::nullopt : std::optional(at_most.back());
+}
+
+// The times of all instants in multiples of `unit`, the last of them as early or as late as can be.
+// False: there are none.
+bool solve(Story& story, std::int64_t unit, TimedGraph::Pace pace) {
     std::vector<AtLeast> rules;
     for (std::uint32_t k = 1; k < story.instants; ++k) {
         rules.push_back({k - 1, k, unit});
@@ -151,6 +170,11 @@ bool solve(Story& story, std::int64_t unit) {
             }
         } else if (bounded) {
             rules.push_back({l.waits_at, l.from, unit - l.what.high});
+        }
+    }
+    if (pace == TimedGraph::Pace::kLatest) {
+        if (const auto last = latest(rules, story.instants)) {
+            rules.push_back({0, story.instants - 1, *last});
         }
     }
     story.times.assign(story.instants, 0);
@@ -217,7 +241,7 @@ std::optional<Script> tell(const World& world, const Story& story, std::string* 
 }  // namespace
 
 std::optional<Script> class_script(const TimedGraph& graph, std::span<const std::uint32_t> path,
-                                   std::string* trouble) {
+                                   std::string* trouble, TimedGraph::Pace pace) {
     const auto none = [&](const char* why) -> std::optional<Script> {
         if (trouble != nullptr) {
             *trouble = why;
@@ -234,7 +258,7 @@ std::optional<Script> class_script(const TimedGraph& graph, std::span<const std:
     if (states.world.net->paced()) {
         return none("a net without time: its untimed paths are its runs");
     }
-    ClassBuilder builder(request, false);
+    ClassBuilder builder(request, states.observed);
     builder.follow(graph);
     Driver& d = builder.driver();
     const NetTables& n = request.net.tables();
@@ -242,12 +266,8 @@ std::optional<Script> class_script(const TimedGraph& graph, std::span<const std:
     std::vector<Branching::Answer> answers;
     d.chooser.record(&answers);
     std::map<std::int64_t, std::uint32_t> lasting;  // number in the present state -> story.lasting
-    std::vector<std::uint8_t> bytes;
     const auto is_state = [&](const Driver::Step& step, std::uint32_t state) {
-        bytes.clear();
-        const auto wanted = states.store[state];
-        return builder.string_of(step, bytes) &&
-               std::equal(bytes.begin(), bytes.end(), wanted.begin(), wanted.end());
+        return builder.is_at(step, states.store[state]);
     };
     // What the step has done to all that lasts.
     const auto note = [&] {
@@ -334,7 +354,7 @@ std::optional<Script> class_script(const TimedGraph& graph, std::span<const std:
         whole = whole && l.what.low % kTicksPerMillisecond == 0 &&
                 (l.what.high > kWaiting || l.what.high % kTicksPerMillisecond == 0);
     }
-    if ((whole && solve(story, kTicksPerMillisecond)) || solve(story, 1)) {
+    if ((whole && solve(story, kTicksPerMillisecond, pace)) || solve(story, 1, pace)) {
         return tell(states.world, story, trouble);
     }
     return none("the path needs times between two ticks");

@@ -138,31 +138,50 @@ namespace {
 // Edges that lie on cycles with visits, and the search for cycles of a better ratio.
 class Ratio {
  public:
-    Ratio(const Graph& g, const StateBits& visits) : g_(g), visits_(visits) {
+    Ratio(const Graph& g, const std::vector<std::uint8_t>& visits) : g_(g), visits_(visits) {
         components_ = strong_components(g);
-        std::vector<bool> visited(components_.count, false);
-        visits.for_each([&](std::uint32_t s) { visited[components_.of[s]] = true; });
+        std::vector<std::uint32_t> sources(g.edges.items.size());
+        visited_.resize(components_.count, 0);
         for (std::uint32_t s = 0; s < g.size(); ++s) {
             for (std::uint32_t e = g.edges.starts[s]; e < g.edges.starts[s + 1]; ++e) {
-                const std::uint32_t t = g.edges.items[e].target;
-                if (components_.of[s] == components_.of[t] && visited[components_.of[s]]) {
-                    edges_.push_back(e);
-                    sources_.push_back(s);
+                sources[e] = s;
+                if (visits[e] != 0 && inside(s, e)) {
+                    visited_[components_.of[s]] = 1;
                 }
+            }
+        }
+        for (std::uint32_t e = 0; e < sources.size(); ++e) {
+            if (inside(sources[e], e) && visited_[components_.of[sources[e]]] != 0) {
+                edges_.push_back(e);
+                sources_.push_back(sources[e]);
             }
         }
     }
     bool empty() const { return edges_.empty(); }
 
-    // Time passes on a cycle without a visit, beside one with visits.
+    // Time passes on a cycle without a visit, beside one with visits; or nobody knows how long a
+    // round takes at most.
     bool visits_get_rarer() const {
-        StateBits others = visits_;
-        others.complement();
-        const StrongComponents inner = strong_components(g_, &others);
+        Graph others;  // without the visits
+        others.edges.starts.assign(g_.size() + 1, 0);
+        for (std::size_t i = 0; i < edges_.size(); ++i) {
+            others.edges.starts[sources_[i] + 1] += visits_[edges_[i]] == 0 ? 1 : 0;
+        }
+        for (std::uint32_t s = 0; s < g_.size(); ++s) {
+            others.edges.starts[s + 1] += others.edges.starts[s];
+        }
+        for (const std::uint32_t e : edges_) {
+            if (visits_[e] == 0) {
+                others.edges.items.push_back(g_.edges.items[e]);
+            }
+        }
+        others.flags.assign(g_.size(), 0);
+        const StrongComponents inner = strong_components(others);
         for (std::size_t i = 0; i < edges_.size(); ++i) {
             const std::uint32_t a = inner.of[sources_[i]];
             const std::uint32_t b = inner.of[g_.edges.items[edges_[i]].target];
-            if (a == b && a != StrongComponents::kNone && g_.high_ticks[edges_[i]] > 0) {
+            const std::int64_t high = g_.high_ticks[edges_[i]];
+            if (high == kNever || (visits_[edges_[i]] == 0 && a == b && high > 0)) {
                 return true;
             }
         }
@@ -170,40 +189,46 @@ class Ratio {
     }
 
     // The cycle of the best ratio, beginning with any cycle that has a visit.
-    Path best(bool least, double& seconds) {
-        Path cycle = any_cycle();
+    Round best(bool least) {
+        const std::vector<std::int64_t>& lasts = least ? g_.low_ticks : g_.high_ticks;
+        Round round;
+        round.cycle = any_cycle();
         for (;;) {
-            std::int64_t ticks = 0;
-            std::int64_t count = 0;
-            for (const std::uint32_t e : cycle) {
-                ticks += g_.low_ticks[e];
-                count += visits_[g_.edges.items[e].target] ? 1 : 0;
+            round.ticks = round.visits = 0;
+            for (const std::uint32_t e : round.cycle) {
+                round.ticks += lasts[e];
+                round.visits += visits_[e];
             }
-            seconds = static_cast<double>(ticks) / static_cast<double>(count) /
-                      static_cast<double>(kTicksPerSecond);
             Path better = negative_cycle([&](std::uint32_t e) {
-                const Wide w = Wide{g_.low_ticks[e]} * count -
-                               Wide{ticks} * (visits_[g_.edges.items[e].target] ? 1 : 0);
+                const Wide w = Wide{lasts[e]} * round.visits - Wide{round.ticks} * visits_[e];
                 return least ? w : -w;
             });
             if (better.empty()) {
-                return cycle;
+                return round;
             }
-            cycle = std::move(better);
+            round.cycle = std::move(better);
         }
     }
 
  private:
+    bool inside(std::uint32_t source, std::uint32_t e) const {
+        return components_.of[source] == components_.of[g_.edges.items[e].target];
+    }
+
     Path any_cycle() const {
-        Path cycle;
-        visits_.for_each([&](std::uint32_t s) {
-            if (cycle.empty()) {
-                if (auto found = shortest_cycle(g_, s)) {
-                    cycle = std::move(*found);
+        for (std::size_t i = 0; i < edges_.size(); ++i) {
+            if (visits_[edges_[i]] != 0) {
+                StateBits home(g_.size());
+                home.add(sources_[i]);
+                const std::uint32_t target = g_.edges.items[edges_[i]].target;
+                if (auto back = shortest_path(g_, target, home)) {
+                    Path cycle = {edges_[i]};
+                    cycle.insert(cycle.end(), back->begin(), back->end());
+                    return cycle;
                 }
             }
-        });
-        return cycle;
+        }
+        return {};
     }
 
     // Bellman-Ford from everywhere at once. Gives a cycle of negative weight, or nothing.
@@ -259,24 +284,23 @@ class Ratio {
     }
 
     const Graph& g_;
-    const StateBits& visits_;
+    const std::vector<std::uint8_t>& visits_;
     StrongComponents components_;
+    std::vector<std::uint8_t> visited_;  // per component
     std::vector<std::uint32_t> edges_, sources_;
 };
 
 }  // namespace
 
-std::optional<CycleTime> cycle_time(const Graph& graph, const StateBits& visits) {
+std::optional<CycleTime> cycle_time(const Graph& graph, const std::vector<std::uint8_t>& visits) {
     Ratio ratio(graph, visits);
     if (ratio.empty()) {
         return std::nullopt;
     }
     CycleTime c;
-    c.least_cycle = ratio.best(true, c.least_s);
-    if (ratio.visits_get_rarer()) {
-        c.greatest_s = std::numeric_limits<double>::infinity();
-    } else {
-        c.greatest_cycle = ratio.best(false, c.greatest_s);
+    c.least = ratio.best(true);
+    if (!ratio.visits_get_rarer()) {
+        c.greatest = ratio.best(false);
     }
     return c;
 }

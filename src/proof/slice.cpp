@@ -121,6 +121,11 @@ class Cut {
                 out_.rules.push_back(i);
             }
         }
+        for (const net::TimeQuestion& q : draft_.questions) {
+            if (whole(q.about)) {
+                to.questions.push_back(q);
+            }
+        }
         for (const net::FinalMarkingDraft& f : draft_.finals) {
             if (whole(f.condition)) {
                 to.finals.push_back(f);

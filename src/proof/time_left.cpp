@@ -259,6 +259,16 @@ std::vector<std::string> assumed(const World& world) {
     for (const std::uint32_t d : world.free_sensors) {
         list.push_back("sensor " + std::string(n.data.path(d)) + " may change at any time");
     }
+    for (std::uint32_t p = 0; p < n.places.size(); ++p) {
+        if (world.net->action(PlaceIndex{p}).valid()) {
+            list.emplace_back("every movement can be performed when it begins");
+            break;
+        }
+    }
+    // A run that goes on for ever ends with the range of its clock (net/engine.h).
+    if (!world.net->paced()) {
+        list.emplace_back("no run is longer than 414 years, where the clock ends");
+    }
     return list;
 }
 

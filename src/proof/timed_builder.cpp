@@ -204,7 +204,7 @@ void TimedBuilder::begin() {
         graph_.waits.waiting.resize(wait_words());
     }
     each_start([&] {
-        const std::uint32_t s = add(0);
+        const std::uint32_t s = add(ends() ? unsigned{Graph::kCut} : 0u);
         if (d.engine.faulted()) {
             note_stop(s, false);
         }
@@ -252,7 +252,7 @@ void TimedBuilder::expand(std::uint32_t state) {
             if (encode(d, step, buffer_)) {
                 Row r;
                 r.edge.label = step.label;
-                r.edge.target = add(0);
+                r.edge.target = add(ends() ? unsigned{Graph::kCut} : 0u);
                 std::tie(r.low, r.high) = ticks(step);
                 r.coincidental = coincidental(d);
                 r.weight = weighs_ ? weight(d, step) : 0;
@@ -329,6 +329,12 @@ TimedGraph TimedBuilder::build() {
         close_row();
     }
     g.ended = ended_;
+    // The engine counts the firings of an instant from the start of each step that is tried here.
+    const std::uint32_t most = net::EngineOptions{}.firings_per_instant;
+    if (g.size() > most) {
+        graph_.assumptions.push_back("no instant has more than " + std::to_string(most) +
+                                     " firings");
+    }
     return std::move(graph_);
 }
 

@@ -29,6 +29,7 @@ struct TimedGraph::States {
     ByteStore store;
     bool several_starts = false;      // state 0 is before all choices of the start
     std::optional<PlainGraph> plain;  // nets without time: the states are its markings
+    bool observed = false;            // of classes: one more variable, the time since the start
 
     net::State decode(std::uint32_t state, std::uint32_t* outside = nullptr,
                       std::size_t* length = nullptr) const;
@@ -50,7 +51,7 @@ std::string time_in_words(std::int64_t ticks);
 // Plays a script in an engine as anybody would; false, and why: it does something else.
 bool plays(const World& world, const Script& script, std::string* trouble);
 std::optional<Script> class_script(const TimedGraph& graph, std::span<const std::uint32_t> path,
-                                   std::string* trouble);
+                                   std::string* trouble, TimedGraph::Pace pace);
 
 // Some run never gets to a state of the set: it ends or stops before, or goes round for ever.
 bool can_avoid(const Graph& graph, const StateBits& wanted);
@@ -69,6 +70,8 @@ class TimedBuilder {
         graph_.states->encode(driver, out);
         return true;
     }
+    // After encode(): nothing that follows is looked for.
+    virtual bool ends() const { return false; }
     // The bounds of the step's ticks, after encode().
     virtual std::pair<std::int64_t, std::int64_t> ticks(const Driver::Step& step) {
         return {step.ticks, step.ticks};

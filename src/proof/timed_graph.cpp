@@ -199,8 +199,8 @@ bool plays(const World& world, const Script& script, std::string* trouble) {
 
 // Follows the path in an engine that runs from the start, step by step: of all answers those that
 // lead to the path's next state.
-std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path,
-                                         std::string* trouble) const {
+std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path, std::string* trouble,
+                                         Pace pace) const {
     const auto none = [&](const char* why) -> std::optional<Script> {
         if (trouble != nullptr) {
             *trouble = why;
@@ -208,7 +208,7 @@ std::optional<Script> TimedGraph::script(std::span<const std::uint32_t> path,
         return std::nullopt;
     };
     if (states->form == ClockForm::kClasses) {
-        return class_script(*this, path, trouble);
+        return class_script(*this, path, trouble, pace);
     }
     if (states->plain) {
         std::vector<std::uint32_t> firings;

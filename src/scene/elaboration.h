@@ -324,6 +324,7 @@ class Elaboration {
     void complete_states();
     void complete_rules();
     void complete_rule(const Element<lang::Rule>& rule);
+    void complete_question(const Element<lang::Question>& question);
     void name_elements(const lang::Rule& node, const Scope& scope, net::Rule& out);
     net::Formula moves_of(motion::ActorIndex actor);
     void complete_ends();
@@ -348,6 +349,7 @@ class Elaboration {
     std::vector<Element<lang::Data>> data_;
     std::vector<Element<lang::Event>> events_;  // movement events have no node
     std::vector<Element<lang::Rule>> rules_;
+    std::vector<Element<lang::Question>> questions_;
     std::vector<Element<lang::End>> ends_;  // one per formula list
     std::vector<std::pair<const lang::EventFile*, Scope>> event_files_;
     std::vector<std::pair<const lang::Block*, Scope>> blocks_;

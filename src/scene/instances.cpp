@@ -171,7 +171,8 @@ void Elaboration::expand(std::uint32_t number) {
 }
 
 void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
-    if (draft().places.size() + draft().transitions.size() + rules_.size() > kMaxElements) {
+    if (draft().places.size() + draft().transitions.size() + rules_.size() + questions_.size() >
+        kMaxElements) {
         error("net-too-large", statement_,
               "more than " + std::to_string(kMaxElements) + " elements",
               "use smaller ranges of `for`");
@@ -247,18 +248,25 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
             net ? make_instance(*net, path, u.span, scope, u.args, {}) : kNoInstance;
         add_member(scope, u.name, {MemberKind::kInstance, made, true});
     }
-    for (const lang::Rule& r : body.rules) {
-        Scope seeing = scope;
-        seeing.sees_all = true;
-        std::string path = path_of(r.name, scope);
-        if (r.name.index.empty()) {
+    // A rule in a loop is named with the turn, unless its name has an index.
+    const auto path_of_turn = [&](const lang::Name& name) {
+        std::string path = path_of(name, scope);
+        if (name.index.empty()) {
             std::string suffix;
             for (const LoopBinding* b = scope.loop; b != nullptr; b = b->up) {
                 suffix = "." + b->text + suffix;
             }
             path += suffix;
         }
-        rules_.push_back({&r, seeing, path});
+        return path;
+    };
+    Scope all_seeing = scope;
+    all_seeing.sees_all = true;
+    for (const lang::Rule& r : body.rules) {
+        rules_.push_back({&r, all_seeing, path_of_turn(r.name)});
+    }
+    for (const lang::Question& q : body.questions) {
+        questions_.push_back({&q, all_seeing, path_of_turn(q.name)});
     }
     for (const lang::End& e : body.ends) {
         ends_.push_back({&e, scope, instances_[scope.instance].path});
@@ -267,9 +275,7 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
         event_files_.emplace_back(&e, scope);
     }
     for (const lang::Block& b : body.blocks) {
-        Scope seeing = scope;
-        seeing.sees_all = true;
-        blocks_.emplace_back(&b, seeing);
+        blocks_.emplace_back(&b, all_seeing);
     }
     for (const lang::For& loop : body.loops) {
         to_unroll_.emplace_back(&loop, scope);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rules and final markings, resolved to formulas of the net.
+// Rules, questions and final markings, resolved to formulas of the net.
 #include "elaboration.h"
 
 namespace puppetri::scene {
@@ -158,6 +158,33 @@ void Elaboration::complete_rules() {
         }
         complete_rule(rule);
     }
+    for (const Element<lang::Question>& question : questions_) {
+        About about(*this, "question " + question.path, question.node->span);
+        if (!names.insert(question.path).second) {
+            error("name-twice", question.node->name.span,
+                  "there is already a rule or question " + question.path, "choose another name");
+        }
+        complete_question(question);
+    }
+}
+
+void Elaboration::complete_question(const Element<lang::Question>& question) {
+    const lang::Question& node = *question.node;
+    const auto kind = [&] {
+        switch (node.kind) {
+            case lang::QuestionKind::kShortestTime:
+                return net::TimeQuestionKind::kShortest;
+            case lang::QuestionKind::kLongestTime:
+                return net::TimeQuestionKind::kLongest;
+            default:
+                return net::TimeQuestionKind::kCycle;
+        }
+    };
+    draft().questions.push_back({.path = question.path,
+                                 .caption = node.caption.text,
+                                 .where = at(node.span),
+                                 .kind = kind(),
+                                 .about = formula_of(node.about, question.scope)});
 }
 
 void Elaboration::complete_ends() {

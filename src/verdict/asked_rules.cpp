@@ -74,4 +74,14 @@ std::vector<Asked> all_rules(const net::NetDraft& draft, const net::Net& net) {
     return out;
 }
 
+std::vector<net::Rule> rules_of(const scene::Scene& scene) {
+    std::vector<net::Rule> out;
+    for (Asked& a : all_rules(scene)) {
+        out.push_back(std::move(a.rule));
+    }
+    return out;
+}
+
+std::vector<net::Rule> rules_of(const net::Net& net) { return net.declarations().rules; }
+
 }  // namespace puppetri::verdict

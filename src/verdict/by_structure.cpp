@@ -63,6 +63,7 @@ std::optional<StructuralProof> Structure::prove(const Asked& asked, const HostLo
                 return StructuralProof{.method = answer.method};
             }
             if (answer.kind == proof::BoundednessAnswer::kUnbounded) {
+                pump = answer;
                 grows = "times left aside, tokens pile up in place " +
                         std::string(net_.place(net::PlaceIndex{answer.place}).path) +
                         " without end";

@@ -9,6 +9,7 @@
 
 #include "builtin_rules.h"
 #include "puppetri/proof/budget.h"
+#include "puppetri/proof/coverability.h"
 #include "puppetri/proof/plain_net.h"
 #include "puppetri/proof/state_equation.h"
 #include "puppetri/verdict/obligation.h"
@@ -47,8 +48,9 @@ class Structure {
     std::string theorem_;
 
  public:
-    // Of `bounded`: what was found where it does not hold without time.
+    // Of `bounded`: what was found where it does not hold without time, and how.
     std::string grows;
+    proof::BoundednessAnswer pump;
 };
 
 }  // namespace puppetri::verdict

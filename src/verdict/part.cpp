@@ -79,19 +79,23 @@ std::uint32_t Part::add(Asked asked) {
     return static_cast<std::uint32_t>(asked_.size() - 1);
 }
 
+proof::GraphRequest Part::request(const proof::Budget& budget, std::uint32_t outside_events) const {
+    return {.net = *net_,
+            .atoms = atoms_.formulas(),
+            .actions = theatre_->actions,
+            .outside_events = outside_events,
+            .beat = theatre_->beat.ticks,
+            .budget = budget};
+}
+
 const proof::TimedGraph* Part::made(Method method, const proof::Budget& budget,
                                     std::uint32_t outside_events, std::string& why) {
     const auto i = static_cast<std::size_t>(method);
     if (!graphs_[i] && why_[i].empty()) {
-        const proof::GraphRequest request{.net = *net_,
-                                          .atoms = atoms_.formulas(),
-                                          .actions = theatre_->actions,
-                                          .outside_events = outside_events,
-                                          .beat = theatre_->beat.ticks,
-                                          .budget = budget};
-        proof::TimedGraph made = method == Method::kReadiness ? proof::readiness_graph(request)
-                                 : method == Method::kExact   ? proof::timed_exact_graph(request)
-                                                              : proof::class_graph(request);
+        const proof::GraphRequest all = request(budget, outside_events);
+        proof::TimedGraph made = method == Method::kReadiness ? proof::readiness_graph(all)
+                                 : method == Method::kExact   ? proof::timed_exact_graph(all)
+                                                              : proof::class_graph(all);
         if (made.available()) {
             graphs_[i].emplace(std::move(made));
         } else {

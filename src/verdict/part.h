@@ -50,6 +50,8 @@ class Part {
     GraphView view(Method method) const;
     bool has(Method method) const { return graphs_[static_cast<std::size_t>(method)].has_value(); }
     const HostLowering* host() const { return host_; }
+    // The atoms of all rules that were added so far; the budget outlives it.
+    proof::GraphRequest request(const proof::Budget& budget, std::uint32_t outside_events) const;
 
     // Found on the way: without time this place grows without end.
     bool grows = false;

@@ -13,10 +13,14 @@
 #include "asked_rules.h"
 #include "builtin_rules.h"
 #include "by_structure.h"
+#include "cutting.h"
+#include "growth.h"
 #include "join_rule.h"
 #include "linear_rule.h"
 #include "part.h"
+#include "path_witness.h"
 #include "plain_witness.h"
+#include "prover.h"
 #include "puppetri/net/tables.h"
 #include "puppetri/proof/coverability.h"
 #include "puppetri/verdict/sample.h"
@@ -30,7 +34,13 @@ namespace {
 using Kind = Finding::Kind;
 using Target = Finding::Target;
 
-constexpr std::uint64_t kMostEdges = 40'000'000;  // of a graph watched by a monitor
+const std::string kByCoincidence =
+    "only by an exact coincidence of drawn times, which has probability 0: ";
+
+// Of a graph watched by a monitor: 24 bytes each.
+std::uint64_t most_edges(const proof::Budget& budget) {
+    return std::min<std::uint64_t>(40'000'000, budget.bytes / 24);
+}
 
 double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
@@ -75,7 +85,7 @@ class Prover {
         for (Work& w : works_) {
             by_structure(w);
         }
-        for (const std::vector<std::uint32_t>& group : groups()) {
+        for (const Splitting::Group& group : groups()) {
             by_graphs(group);
         }
         if (!left_over_.empty()) {
@@ -149,85 +159,87 @@ class Prover {
 
     // ---- parts ----
 
-    // Open rules by the parts of the net that they read; what reads everything comes together.
-    std::vector<std::vector<std::uint32_t>> groups() {
-        std::vector<std::vector<std::uint32_t>> out;
+    std::vector<Splitting::Group> groups() {
         std::vector<std::uint32_t> open;
+        std::vector<const Asked*> rules;
         for (std::uint32_t i = 0; i < works_.size(); ++i) {
             if (!works_[i].done) {
                 open.push_back(i);
+                rules.push_back(&works_[i].asked);
             }
         }
         if (open.empty()) {
-            return out;
-        }
-        std::vector<const Asked*> rules;
-        for (const std::uint32_t i : open) {
-            rules.push_back(&works_[i].asked);
+            return {};
         }
         parts_ = Splitting(net_, draft_, play_, rules);
-        if (parts_.count() <= 1) {
-            part_of_group_.push_back(kWhole);
-            out.push_back(std::move(open));
-            return out;
-        }
-        std::vector<std::vector<std::uint32_t>> of_part(parts_.count());
-        std::vector<std::uint32_t> everywhere;
-        for (const std::uint32_t i : open) {
-            const auto read = parts_.read_by(works_[i].asked);
-            if (read.size() == 1) {
-                of_part[read[0]].push_back(i);
-            } else {
-                everywhere.push_back(i);
+        std::vector<Splitting::Group> out = parts_.groups(rules);
+        for (Splitting::Group& group : out) {
+            for (std::uint32_t& i : group.rules) {
+                i = open[i];
             }
-        }
-        for (std::uint32_t p = 0; p < parts_.count(); ++p) {
-            if (!of_part[p].empty()) {
-                part_of_group_.push_back(p);
-                out.push_back(std::move(of_part[p]));
-            }
-        }
-        if (!everywhere.empty()) {
-            part_of_group_.push_back(kWhole);
-            out.push_back(std::move(everywhere));
         }
         return out;
     }
 
     // ---- graphs ----
 
-    void by_graphs(const std::vector<std::uint32_t>& group) {
-        const std::uint32_t which = part_of_group_[next_group_++];
-        std::unique_ptr<Part> part;
-        if (which == kWhole) {
-            if (parts_.count() > 1 && by_parts(group)) {
-                return;
-            }
-            part = std::make_unique<Part>(net_, theatre_, host_.get());
-        } else {
-            part = make_part(which, group);
+    // What bears it, without the places that only collect, if these may grow.
+    void by_graphs(const Splitting::Group& group) {
+        const std::vector<std::uint32_t> collecting = growing_collectors();
+        std::vector<std::uint32_t> without, with;
+        for (const std::uint32_t i : group.rules) {
+            const bool bears = !collecting.empty() && bears_cutting(works_[i].asked, collecting);
+            (bears ? without : with).push_back(i);
         }
+        by_graphs(group.part, without, true);
+        by_graphs(group.part, with, false);
+    }
+    std::vector<std::uint32_t> growing_collectors() {
+        if (!collectors_) {
+            collectors_ = collectors(parts_.lowered());
+            if (!collectors_->empty() && surely_bounded(net_, budget(0.02))) {
+                collectors_->clear();
+            }
+        }
+        return *collectors_;
+    }
+
+    void by_graphs(std::uint32_t which, const std::vector<std::uint32_t>& group, bool cut) {
+        const bool whole = which == kWhole;
+        if (group.empty() || (whole && parts_.count() > 1 && by_parts(group, cut))) {
+            return;
+        }
+        auto part = whole && !cut ? nullptr : make_part(which, group, cut);
         if (part == nullptr) {
             part = std::make_unique<Part>(net_, theatre_, host_.get());
         }
         examine(*part, group);
     }
 
-    std::unique_ptr<Part> make_part(std::uint32_t which, const std::vector<std::uint32_t>& group) {
+    std::unique_ptr<Part> make_part(std::uint32_t which, const std::vector<std::uint32_t>& group,
+                                    bool cut) {
         std::vector<net::Rule> rules;
         for (const std::uint32_t i : group) {
             rules.push_back(works_[i].asked.rule);
         }
-        return Part::of(parts_.draft_of(which, rules), theatre_, play_);
+        net::NetDraft draft;
+        if (which == kWhole) {
+            draft = parts_.lowered();
+            draft.rules = std::move(rules);
+        } else {
+            draft = parts_.draft_of(which, rules);
+        }
+        return Part::of(cut ? without_collectors(std::move(draft)) : std::move(draft), theatre_,
+                        play_);
     }
 
     // Rules about the whole net, asked of each part: all parts keep them, or (for rest) one does.
-    bool by_parts(const std::vector<std::uint32_t>& group) {
+    bool by_parts(const std::vector<std::uint32_t>& group, bool cut) {
         std::vector<std::uint32_t> rest;
         std::vector<Verdict> sums(group.size());
         std::vector<std::uint8_t> good(group.size(), 1), once(group.size(), 0);
         for (std::uint32_t p = 0; p < parts_.count(); ++p) {
-            auto part = make_part(p, {});
+            auto part = make_part(p, {}, cut);
             if (part == nullptr) {
                 return false;
             }
@@ -329,6 +341,7 @@ class Prover {
         }
         for (const std::uint32_t i : open) {
             if (!works_[i].done) {
+                by_growth(works_[i]);
                 by_sampling(works_[i]);
                 finish(works_[i]);
             }
@@ -377,8 +390,23 @@ class Prover {
         conclude(f, part.asked(number).rule.kind, std::move(witness), trouble, w.verdict);
     }
 
+    void by_growth(Work& w) {
+        const net::Rule& rule = w.asked.rule;
+        if (w.asked.question != Question::kRule || rule.kind != net::RuleKind::kBounded ||
+            rule.count != kNoCount || parts_.lowered().places.empty() || cancelled()) {
+            return;
+        }
+        const double begin = now_s();
+        proof::Budget b = budget(0.1);
+        b.seconds = std::min(b.seconds, 5.0);
+        refute_bounded(theatre_, parts_.lowered(), play_, rule, structure_.pump,
+                       options_.outside_events, b, w.verdict);
+        w.seconds += now_s() - begin;
+    }
+
     void by_sampling(Work& w) {
-        if (options_.samples == 0 || w.asked.question != Question::kRule || cancelled()) {
+        if (w.verdict.answer != Answer::kUnknown || options_.samples == 0 ||
+            w.asked.question != Question::kRule || cancelled()) {
             return;
         }
         const Watched watch = watched(w.asked);
@@ -439,12 +467,13 @@ class Prover {
         const Asked& asked = part.asked(number);
         const GraphView view = part.view(method);
         if (asked.question != Question::kRule) {
-            return check_question(asked.question, view, kMostEdges);
+            return check_question(asked.question, view, most_edges(options_.budget));
         }
         if (part.obligation(number).temporal) {
             return check_temporal(part.net(), part.obligation(number), view, budget(0.5));
         }
-        return check_on_graph(part.net(), part.obligation(number), view, kMostEdges);
+        return check_on_graph(part.net(), part.obligation(number), view,
+                              most_edges(options_.budget));
     }
 
     // First without a graph, if none is there yet: invariants may say who follows whom.
@@ -560,7 +589,8 @@ class Prover {
             return;
         }
         const GraphView view = part.view(method);
-        const Finding f = check_linear(part.net(), o, view, budget(0.3), kMostEdges);
+        const Finding f =
+            check_linear(part.net(), o, view, budget(0.3), most_edges(options_.budget));
         if (f.kind == Kind::kHolds) {
             w.verdict.answer = Answer::kProved;
             w.verdict.force = f.force;
@@ -578,71 +608,27 @@ class Prover {
     void refuted(const Part& part, const proof::TimedGraph& graph, const Finding& f, Work& w,
                  Method method) {
         w.verdict.reason = f.reason;
-        for (const std::uint32_t e : f.path) {
-            if (e < graph.coincidental.size() && graph.coincidental[e] != 0) {
-                w.verdict.reason =
-                    "only by an exact coincidence of drawn times, which has probability 0: " +
-                    f.reason;
-                return;
-            }
+        if (by_coincidence(graph, f)) {
+            w.verdict.reason = kByCoincidence + f.reason;
+            return;
         }
         if (!f.shown) {
             w.verdict.notes.push_back("no single run shows it: it is about choices");
         } else {
             std::string trouble = "it lies in a part of the net";
-            const bool whole_net = &part.net() == &net_;
-            // Events of the outside are no reason for an instant to last for ever, and the stage
-            // need not do the same again.
-            const bool doubt =
-                f.loop_from != kFar &&
-                (theatre_.auto_durations ||
-                 std::any_of(f.path.begin() + f.loop_from, f.path.end(), [&](std::uint32_t e) {
-                     return graph.waits.is_rare(graph.graph.edges.items[e]);
-                 }));
-            std::vector<std::uint32_t> path = f.path, rounds;
-            if (doubt) {
-                go_round(graph.graph, f.loop_from, path, rounds);
-            }
-            const auto script = whole_net ? graph.script(path, &trouble) : std::nullopt;
-            auto witness = script ? witness_of(theatre_, *script, &trouble, rounds) : std::nullopt;
+            auto witness =
+                &part.net() == &net_ ? witness_of_path(theatre_, graph, f, trouble) : std::nullopt;
             if (!witness) {
                 w.wants_times = method == Method::kReadiness;
                 w.verdict.reason = f.reason + ", but the player does not go that way: " + trouble;
                 return;
             }
             witness->rule = w.verdict.rule;
-            witness->says = f.reason;
-            if (doubt) {
-                witness->violates_after = Witness::kNone;
-            } else if (f.loop_from != kFar) {
-                witness->lasso_from = firings_along(graph.graph, f.path, f.loop_from);
-            } else {
-                witness->violates_after = static_cast<std::uint32_t>(witness->steps.size());
-            }
             w.verdict.witness = std::move(witness);
         }
         w.verdict.answer = Answer::kRefuted;
         w.verdict.method = name_of(method);
         w.verdict.assumptions = graph.assumptions;
-    }
-    // Some rounds of the loop; after how many firings each ends.
-    static void go_round(const proof::Graph& graph, std::uint32_t loop_from,
-                         std::vector<std::uint32_t>& path, std::vector<std::uint32_t>& rounds) {
-        constexpr std::size_t kRounds = 8, kLongest = 4000;
-        const std::vector<std::uint32_t> loop(path.begin() + loop_from, path.end());
-        for (std::size_t i = 0; i < kRounds && path.size() + loop.size() < kLongest; ++i) {
-            rounds.push_back(firings_along(graph, path, static_cast<std::uint32_t>(path.size())));
-            path.insert(path.end(), loop.begin(), loop.end());
-        }
-        rounds.push_back(firings_along(graph, path, static_cast<std::uint32_t>(path.size())));
-    }
-    static std::uint32_t firings_along(const proof::Graph& graph,
-                                       const std::vector<std::uint32_t>& path, std::uint32_t to) {
-        std::uint32_t firings = 0;
-        for (std::uint32_t i = 0; i < to && i < path.size(); ++i) {
-            firings += (graph.edges.items[path[i]].label & proof::Edge::kEvent) == 0 ? 1 : 0;
-        }
-        return firings;
     }
 
     // The rule in the numbers of the whole net, as runs are watched.
@@ -694,10 +680,7 @@ class Prover {
                 PursueLimits any = limits(f);
                 any.coincide = true;
                 if (pursue(theatre, hunt, any).witness) {
-                    w.verdict.reason =
-                        "only an exact coincidence of drawn times, which has "
-                        "probability 0, was found to break it: " +
-                        f.reason;
+                    w.verdict.reason = kByCoincidence + f.reason;
                 }
             }
             return;
@@ -740,7 +723,7 @@ class Prover {
         w.verdict.reason.clear();
     }
 
-    static constexpr std::uint32_t kWhole = ~std::uint32_t{0};
+    static constexpr std::uint32_t kWhole = Splitting::kWhole;
 
     const net::NetDraft& draft_;
     const Theatre theatre_;
@@ -752,34 +735,30 @@ class Prover {
     std::unique_ptr<FigureLowering> host_;
     std::vector<Work> works_;
     Splitting parts_;
+    std::optional<std::vector<std::uint32_t>> collectors_;
     std::vector<std::uint32_t> left_over_;
-    std::vector<std::uint32_t> part_of_group_;
-    std::size_t next_group_ = 0;
     JoinBook join_book_;
     std::unique_ptr<JoinRule> joins_;  // of the part that is being looked at
 };
 
 }  // namespace
 
+std::vector<Verdict> prove_asked(const net::NetDraft& draft, const Theatre& theatre,
+                                 const stage::Play* play, std::vector<Asked> asked,
+                                 const ProveOptions& options) {
+    Prover prover(draft, theatre, play, options);
+    return prover.run(std::move(asked));
+}
+
 std::vector<Verdict> prove(const scene::Scene& scene, const ProveOptions& options) {
-    Prover prover(scene.draft, theatre_of(scene), &scene.play, options);
-    return prover.run(chosen(all_rules(scene), options));
+    return prove_asked(scene.draft, theatre_of(scene), &scene.play,
+                       chosen(all_rules(scene), options), options);
 }
 
 std::vector<Verdict> prove(const net::NetDraft& draft, const net::Net& net,
                            const ProveOptions& options) {
-    Prover prover(draft, theatre_of(net), nullptr, options);
-    return prover.run(chosen(all_rules(draft, net), options));
+    return prove_asked(draft, theatre_of(net), nullptr, chosen(all_rules(draft, net), options),
+                       options);
 }
-
-std::vector<net::Rule> rules_of(const scene::Scene& scene) {
-    std::vector<net::Rule> out;
-    for (Asked& a : all_rules(scene)) {
-        out.push_back(std::move(a.rule));
-    }
-    return out;
-}
-
-std::vector<net::Rule> rules_of(const net::Net& net) { return net.declarations().rules; }
 
 }  // namespace puppetri::verdict

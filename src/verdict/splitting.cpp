@@ -33,6 +33,31 @@ bool same_numbers(const net::NetDraft& lowered, const net::Net& net) {
 
 }  // namespace
 
+bool of_one(const Asked& asked) {
+    return asked.question == Question::kRule && asked.rule.kind == net::RuleKind::kDeadlockFree;
+}
+
+bool splits(const Asked& asked) {
+    if (asked.question == Question::kOneOfEach || asked.question == Question::kJoins) {
+        return false;
+    }
+    if (asked.question != Question::kRule) {
+        return true;
+    }
+    switch (asked.rule.kind) {
+        case net::RuleKind::kDeadlockFree:
+        case net::RuleKind::kEnds:
+            return true;
+        case net::RuleKind::kLive:
+        case net::RuleKind::kQuasiLive:
+            return asked.rule.transitions.empty();
+        case net::RuleKind::kBounded:
+            return asked.rule.operands.empty();
+        default:
+            return false;
+    }
+}
+
 Splitting::Splitting(const net::Net& net, const net::NetDraft& draft, const stage::Play* play,
                      const std::vector<const Asked*>& rules)
     : net_(&net), play_(play) {
@@ -96,6 +121,27 @@ Splitting::Splitting(const net::Net& net, const net::NetDraft& draft, const stag
         e = number[root(e)];
     }
     parts_.count = count;
+}
+
+std::vector<Splitting::Group> Splitting::groups(const std::vector<const Asked*>& rules) const {
+    std::vector<Group> of_part(count());
+    Group everywhere;
+    for (std::uint32_t i = 0; i < rules.size(); ++i) {
+        const std::vector<std::uint32_t> read =
+            count() <= 1 ? std::vector<std::uint32_t>() : read_by(*rules[i]);
+        (read.size() == 1 ? of_part[read[0]] : everywhere).rules.push_back(i);
+    }
+    std::vector<Group> out;
+    for (std::uint32_t p = 0; p < count(); ++p) {
+        if (!of_part[p].rules.empty()) {
+            of_part[p].part = p;
+            out.push_back(std::move(of_part[p]));
+        }
+    }
+    if (!everywhere.rules.empty()) {
+        out.push_back(std::move(everywhere));
+    }
+    return out;
 }
 
 bool Splitting::reads_everything(const Asked& asked) {

@@ -13,6 +13,11 @@
 
 namespace puppetri::verdict {
 
+// Each part can be asked by itself, and the answers put together.
+bool splits(const Asked& asked);
+// It is enough that one part keeps it.
+bool of_one(const Asked& asked);
+
 class Splitting {
  public:
     // One part: the whole net.
@@ -27,6 +32,18 @@ class Splitting {
     std::vector<std::uint32_t> read_by(const Asked& asked) const;
     // A part with these rules, as far as they lie in it.
     net::NetDraft draft_of(std::uint32_t part, const std::vector<net::Rule>& rules) const;
+
+    // The whole net, with its numbers; without places: there is no such draft.
+    const net::NetDraft& lowered() const { return lowered_; }
+
+    // Rules (by their numbers in the list) by the part that they read; what reads several comes
+    // last, together.
+    static constexpr std::uint32_t kWhole = ~std::uint32_t{0};
+    struct Group {
+        std::uint32_t part = kWhole;
+        std::vector<std::uint32_t> rules;
+    };
+    std::vector<Group> groups(const std::vector<const Asked*>& rules) const;
 
     static bool reads_everything(const Asked& asked);
     // Of what reads everything: each part can be asked by itself, and the answers put together.

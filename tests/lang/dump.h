@@ -105,6 +105,9 @@ class Dump {
             item("rule", r.name, r.caption, static_cast<int>(r.kind), r.operands, r.bound,
                  r.when_settled);
         }
+        for (const Question& q : b.questions) {
+            item("question", q.name, q.caption, static_cast<int>(q.kind), q.about);
+        }
         for (const End& e : b.ends) {
             item("end", e.formulas);
         }

@@ -274,6 +274,23 @@ TEST_CASE("rules have forms [unit]") {
     CHECK(to_text(ltl.operands[0]) == "G(a implies F(b until c))");
 }
 
+TEST_CASE("questions have forms [unit]") {
+    const auto question = [](const std::string& text) {
+        File file = parsed("question q " + text);
+        REQUIRE(file.body.questions.size() == 1);
+        return std::move(file.body.questions[0]);
+    };
+    CHECK(question("shortest time to a and b").kind == QuestionKind::kShortestTime);
+    CHECK(question("longest time to (a)").kind == QuestionKind::kLongestTime);
+    const Question cycle = question("\"how long a round takes\" cycle time of t");
+    CHECK(cycle.kind == QuestionKind::kCycleTime);
+    CHECK(cycle.caption.text == "how long a round takes");
+    CHECK(to_text(cycle.about) == "t");
+    // The words stay names elsewhere.
+    const Net net = in_net("place question\nplace cycle\nshortest: question -> cycle");
+    CHECK(net.body.places.size() == 2);
+}
+
 TEST_CASE("keywords are keywords only where they can be [unit]") {
     const Net net = in_net(
         "place place\nplace takes takes 2 s\nplace now\nplace live\nwhen: now + takes -> "

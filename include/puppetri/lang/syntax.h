@@ -212,6 +212,17 @@ struct Rule {
     Span span;
 };
 
+enum class QuestionKind : std::uint8_t { kShortestTime, kLongestTime, kCycleTime };
+
+// question NAME "caption" shortest time to A | longest time to A | cycle time of A
+struct Question {
+    Name name;
+    Caption caption;
+    QuestionKind kind = QuestionKind::kShortestTime;
+    Expr about;
+    Span span;
+};
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Blocks: every other kind, parsed alike and given meaning by whoever knows the kind
 
@@ -261,6 +272,7 @@ struct Body {
     std::vector<EventFile> event_files;
     std::vector<Use> uses;
     std::vector<Rule> rules;
+    std::vector<Question> questions;
     std::vector<End> ends;
     std::vector<For> loops;
     std::vector<Net> nets;
@@ -268,7 +280,8 @@ struct Body {
     std::vector<Block> blocks;
 };
 
-// for p in (a, b) { ... }, for i in 1 .. n { ... }. A rule named `fair` in it is named `fair.a`.
+// for p in (a, b) { ... }, for i in 1 .. n { ... }. A rule (or question) named `fair` in it is
+// named `fair.a`.
 struct For {
     Name variable;
     Expr domain;

@@ -228,6 +228,7 @@ struct NetDraft {
     std::vector<HostAtom> host_atoms;
     std::vector<NamedState> states;
     std::vector<Rule> rules;
+    std::vector<TimeQuestion> questions;
     std::vector<FinalMarkingDraft> finals;
 };
 

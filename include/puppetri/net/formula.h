@@ -121,4 +121,19 @@ struct Rule {
     bool when_settled = false;  // checked only where time passes
 };
 
+// A question about time, whose answer is a number: `question NAME shortest time to A`.
+enum class TimeQuestionKind : std::uint8_t {
+    kShortest,  // from the start until the statement is true first, in the quickest of all runs
+    kLongest,   // the same in the slowest
+    kCycle,     // from one time that it becomes true to the next, in the long run
+};
+
+struct TimeQuestion {
+    std::string path;
+    std::string caption;
+    SourceSpan where;
+    TimeQuestionKind kind = TimeQuestionKind::kShortest;
+    Formula about;  // of one moment: places, data, firings, events, figures
+};
+
 }  // namespace puppetri::net

@@ -72,6 +72,9 @@ void each_formula(NetDraft& net, F&& f) {
             f(operand);
         }
     }
+    for (TimeQuestion& q : net.questions) {
+        f(q.about);
+    }
     for (FinalMarkingDraft& m : net.finals) {
         f(m.condition);
     }

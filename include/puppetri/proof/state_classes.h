@@ -21,13 +21,38 @@ namespace puppetri::proof {
 // Cost   O(n^3) per edge for n that wait.
 TimedGraph class_graph(const GraphRequest& request);
 
-// The shortest and the longest time over all runs from the initial state until the formula first
-// holds, its firings and events apart. Nothing where the classes are not available.
-struct Extremes {
-    Ended ended = Ended::kDone;
-    bool reachable = false, avoidable = false;
-    std::int64_t shortest = 0, longest = 0;  // ticks; longest never: without bound
+// A statement about a moment: may it hold, given the rows of bits of the request's atoms and the
+// label of the step that led here (Edge::label; kPass at the start)?
+struct MomentTest {
+    bool (*may_hold)(const void* statement, const std::uint64_t* may, const std::uint64_t* must,
+                     std::uint32_t label) = nullptr;
+    const void* statement = nullptr;
 };
-std::optional<Extremes> extreme_times(const GraphRequest& request, const net::Formula& wanted);
+
+// The time from the start until the statement may hold first, over all runs: of the quickest one,
+// or of the slowest. In real time, both ends of intervals included.
+// Needs  of the slowest: no run goes without it for ever (else the search does not end by itself).
+// Gives  nothing where the classes are not available or not exact.
+// Cost   classes with one variable more: the time since the start. More of them than class_graph
+//        has, as far as it takes.
+struct ExtremeTime {
+    Ended ended = Ended::kDone;  // else nothing below is known
+    bool reached = false;
+    std::int64_t ticks = 0;
+    std::optional<Script> run;  // that takes just so long, if whole ticks can
+};
+std::optional<ExtremeTime> extreme_time(const GraphRequest& request, const MomentTest& wanted,
+                                        bool quickest);
+
+// The least and the greatest time from one step that makes the statement true to the next, over all
+// runs: no mean of such times lies outside.
+// Needs  on every way round time passes only if the statement becomes true (else the search does
+//        not end by itself).
+// Gives  nothing where there are no classes, or not all were looked at.
+struct LapTimes {
+    bool any = false;  // it becomes true twice in some run
+    std::int64_t least = SimTime::never().ticks, greatest = 0;
+};
+std::optional<LapTimes> lap_times(const GraphRequest& request, const MomentTest& visited);
 
 }  // namespace puppetri::proof

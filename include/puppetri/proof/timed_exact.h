@@ -33,17 +33,26 @@ struct TimeToReach {
 };
 TimeToReach time_to_reach(const Graph& graph, const StateBits& wanted);
 
-// The least and the greatest mean time per visit of a state of the set, over all that goes round
-// for ever and visits again and again: how long a round takes.
-// Needs  exact ticks on the edges.
-// Gives  nothing if no cycle has a visit; greatest is infinite if the visits may become ever rarer.
-// Cost   O(states * edges) per improvement, few of them.
+// So many ticks for so many visits, on the whole way round.
+struct Round {
+    std::int64_t ticks = 0;
+    std::int64_t visits = 0;
+    Path cycle;
+};
+
+// The least and the greatest mean time per visit, over all that goes round for ever and visits
+// again and again: how long a round takes. The least counts the low ends of the edges' ticks, the
+// greatest the high ends: where they differ these are bounds of what runs do.
+// Needs   ticks on the edges; visits: 1 for the edges (in the order of edges.items) that are
+//         visits.
+// Gives   nothing if no cycle has a visit; no greatest if the visits may become ever rarer.
+// Cost    O(states * edges) per improvement, few of them.
 // Source  W. Dinkelbach, On nonlinear fractional programming (1967), for the ratio of cycles;
 //         exact in whole numbers.
 struct CycleTime {
-    double least_s = 0, greatest_s = 0;
-    Path least_cycle, greatest_cycle;  // the latter empty if infinite
+    Round least;
+    std::optional<Round> greatest;
 };
-std::optional<CycleTime> cycle_time(const Graph& graph, const StateBits& visits);
+std::optional<CycleTime> cycle_time(const Graph& graph, const std::vector<std::uint8_t>& visits);
 
 }  // namespace puppetri::proof

@@ -139,9 +139,11 @@ class TimedGraph {
     // Edges by their number in graph.edges.items, one after another from the initial state.
     // Gives  a script that has been played and did just this; nothing if the path is no run, or
     //        not one that a script can play (trouble says why).
+    // Where durations are intervals: the run of this path that ends soonest, or as late as it can.
     // Needs  graph.exact for every path to have one.
+    enum class Pace : std::uint8_t { kSoonest, kLatest };
     std::optional<Script> script(std::span<const std::uint32_t> path,
-                                 std::string* trouble = nullptr) const;
+                                 std::string* trouble = nullptr, Pace pace = Pace::kSoonest) const;
     // The end of each edge is not enough to find a path back: breadth first from the initial state.
     // Gives  the edges of a shortest path; empty for the initial state.
     std::vector<std::uint32_t> path_to(std::uint32_t state) const;

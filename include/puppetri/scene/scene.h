@@ -53,6 +53,7 @@ struct Scene {
     Diagnostics notes;  // warnings and notes: no errors
 
     const std::vector<net::Rule>& rules() const { return net.declarations().rules; }
+    const std::vector<net::TimeQuestion>& questions() const { return net.declarations().questions; }
 };
 
 // Reads a scene and all that it imports.

@@ -31,7 +31,8 @@ struct Product {
     // Nothing has to happen here any more: dead, or all that could is optional, or the run stops.
     bool rests(std::uint32_t node) const {
         const std::uint32_t s = state[node];
-        return graph->dead(s) || (graph->flags[s] & proof::Graph::kOptional) != 0 || stops(node);
+        return stops(node) ||
+               (!cut(node) && (graph->dead(s) || (graph->flags[s] & proof::Graph::kOptional) != 0));
     }
     // The run may stop here with a fault.
     bool stops(std::uint32_t node) const { return !stop.empty() && stop[state[node]] != 0; }
