@@ -244,19 +244,4 @@ bool concerns(Question question, const std::string& code) {
     }
 }
 
-bool (*fault_of(Question question))(const std::string&) {
-    switch (question) {
-        case Question::kTimeGoesOn:
-            return [](const std::string& c) { return concerns(Question::kTimeGoesOn, c); };
-        case Question::kModulesEndClean:
-            return [](const std::string& c) { return concerns(Question::kModulesEndClean, c); };
-        case Question::kDataInRange:
-            return [](const std::string& c) { return concerns(Question::kDataInRange, c); };
-        case Question::kNothingStops:
-            return [](const std::string& c) { return concerns(Question::kNothingStops, c); };
-        default:
-            return nullptr;
-    }
-}
-
 }  // namespace puppetri::verdict

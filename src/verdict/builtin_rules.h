@@ -36,7 +36,5 @@ std::vector<Asked> built_in_rules(const net::Net& net, const net::NetDraft& draf
 
 // True for the codes of faults that break the answer to this question.
 bool concerns(Question question, const std::string& fault_code);
-// The same of one question as a function; null: no fault breaks it.
-bool (*fault_of(Question question))(const std::string& fault_code);
 
 }  // namespace puppetri::verdict
