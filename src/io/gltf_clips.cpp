@@ -216,6 +216,12 @@ class Maker {
                                "split the figure");
                 return;
             }
+            if (!(length(model_[n].translation) < 1e9)) {
+                defects_.error("bad-node", {path_, 0, 0, 1}, g_.node_text(n),
+                               "it lies a million kilometres away, or nowhere",
+                               "export the file anew, or name its unit with --scale");
+                return;
+            }
             joint_of_[n] = static_cast<std::uint32_t>(file_.skeleton.joints.size());
             file_.skeleton.joints.push_back(std::move(joint));
         }

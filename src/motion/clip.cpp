@@ -54,7 +54,9 @@ typename Key::Rate rate_at(const ClipTrack<Key>& track, double t_s, bool loops, 
     return rate_in(make_segment(track, i, seam), t);
 }
 
-bool finite(double x) { return std::fabs(x) < 1e300; }
+// Beyond any figure: what is larger is a broken file, and would make endless work of sampling.
+constexpr double kLargest = 1e9, kLongest_s = 1e6;
+bool finite(double x) { return std::fabs(x) < kLargest; }
 bool finite(Vec3 v) { return finite(v.x) && finite(v.y) && finite(v.z); }
 bool finite(Quat q) { return finite(Vec3{q.x, q.y, q.z}) && finite(q.w); }
 bool well_formed(double x) { return finite(x); }
@@ -69,9 +71,10 @@ class Checker {
     Checker(const Clip& clip, std::string_view file) : clip_(clip), file_(file) {}
 
     Diagnostics run() {
-        if (!(finite(clip_.duration_s) && clip_.duration_s >= 0)) {
+        if (!(clip_.duration_s >= 0 && clip_.duration_s <= kLongest_s)) {
             complain("bad-clip-time", "clip " + clip_.name,
-                     "the duration is not a number of seconds from 0", "give the clip a duration");
+                     "the duration is not a number of seconds from 0 to a million",
+                     "give the clip a duration");
             return std::move(defects_);
         }
         tracks(clip_.rotations, "rotation of ");
@@ -134,7 +137,7 @@ class Checker {
             if (!well_formed(key.value) || !finite(key.in) || !finite(key.out) ||
                 !finite(s.tension) || !finite(s.continuity) || !finite(s.bias)) {
                 complain("bad-clip-value", here,
-                         "its value is not a finite number, or not a rotation",
+                         "its value is not a finite number below 1e9, or not a rotation",
                          "give finite numbers, and of rotations unit quaternions");
                 return;
             }

@@ -84,9 +84,9 @@ struct Clip {
 };
 
 // All defects: times that are not finite, not ascending or outside [0, duration]; values that are
-// not finite; rotations that are not unit (within 1e-3); tracks without keys or twice; easings
-// whose time runs back. Codes "bad-clip-time", "bad-clip-value", "bad-clip-track". `file` names the
-// source in them.
+// not finite or beyond 1e9; durations beyond a million seconds; rotations that are not unit (within
+// 1e-3); tracks without keys or twice; easings whose time runs back. Codes "bad-clip-time",
+// "bad-clip-value", "bad-clip-track". `file` names the source in them.
 Status check(const Clip& clip, std::string_view file = "");
 
 // The value of one track. `loops` and `duration_s` are the clip's. Time outside [0, duration] is
