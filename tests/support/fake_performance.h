@@ -66,7 +66,8 @@ inline figure::Mesh puppet_mesh(const figure::Skeleton& skeleton) {
 class FakePerformance : public stage::Performance {
  public:
     explicit FakePerformance(double seconds = 4) : seconds_(seconds) {
-        actor_views_ = {{"ana", &skeleton_, &mesh_}, {"rui", &skeleton_, &mesh_}};
+        const figure::JointIndex hips = skeleton_.find("hips");
+        actor_views_ = {{"ana", &skeleton_, &mesh_, hips}, {"rui", &skeleton_, &mesh_, hips}};
         ball_.positions = {{0, 0.11f, 0}, {0.1f, -0.05f, 0}, {-0.1f, -0.05f, 0}, {0, 0, 0.1f}};
         ball_.normals = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
         ball_.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}};
