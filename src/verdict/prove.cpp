@@ -360,8 +360,9 @@ class Prover {
              few->graph.size() <= options_.first_look_states)) {
             return;
         }
-        // Of a net with times it sees too much to spend much on it.
-        PlainRules rules(part.net(), part.host(), budget(part.net().paced() ? 0.6 : 0.15));
+        // Of a net with times it sees too much to spend much on it, and what grows has no end.
+        const bool may_end = part.net().paced() && structure_.grows.empty();
+        PlainRules rules(part.net(), part.host(), budget(may_end ? 0.6 : 0.1));
         if (!rules.available()) {
             return;
         }
