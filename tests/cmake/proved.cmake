@@ -3,6 +3,7 @@
 execute_process(COMMAND "${PUPPETRI}" ${ARGUMENTS} -o "${WORK}" WORKING_DIRECTORY "${ROOT}" OUTPUT_VARIABLE printed
     ERROR_VARIABLE errors RESULT_VARIABLE code)
 string(REGEX REPLACE "(PROVED|REFUTED|UNKNOWN|SAMPLED)([^\n]*[^ \n]) +[0-9.]+ m?s\n" "\\1\\2\n" printed "${printed}")
+string(REGEX REPLACE "([0-9]+ states) +[0-9.]+ m?s\n" "\\1\n" printed "${printed}")  # of questions
 string(REPLACE "${WORK}" "out" printed "${printed}")
 if(NOT code EQUAL EXIT)
     message(FATAL_ERROR "exit code ${code} instead of ${EXIT}: ${printed}${errors}")
