@@ -247,8 +247,7 @@ class Timer {
                 continue;
             }
             std::string why;
-            const proof::TimedGraph* graph =
-                s.part->whole_graph(method, limits(0.4), why);
+            const proof::TimedGraph* graph = s.part->whole_graph(method, limits(0.4), why);
             if (graph == nullptr) {
                 s.why = std::string(name_of(method)) + ": " + why;
             } else if (!graph->graph.over) {
