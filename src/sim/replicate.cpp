@@ -133,7 +133,7 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
     const std::uint64_t pair = plan.antithetic ? 2 : 1;
     PUP_REQUIRE(plan.replications >= 2 * pair);
     Outcome outcome;
-    outcome.width = width;
+    outcome.width = static_cast<std::uint32_t>(width);
     std::vector<Known> state;
     std::vector<double> values;
     // What the journal knows of these numbers. False: something is missing.

@@ -81,7 +81,7 @@ struct Failure {
 };
 
 struct Outcome {
-    std::size_t width = 0;
+    std::uint32_t width = 0;
     // The replications that were finished, in order of number, and their values row by row.
     std::vector<std::uint64_t> numbers;
     std::vector<double> values;
@@ -92,7 +92,7 @@ struct Outcome {
     bool precise_enough = true;     // false: at_most came first
 
     std::span<const double> row(std::size_t i) const {
-        return std::span(values).subspan(i * width, width);
+        return std::span(values).subspan(i * std::size_t{width}, width);
     }
 };
 
