@@ -17,10 +17,11 @@ END
 
 # Program packages are needed when their command is missing, library packages when Debian does not know them installed.
 build_tools=(g++:g++ cmake:cmake ninja:ninja-build ccache:ccache)
-build_libraries=(tao-pegtl-dev libcli11-dev libfmt-dev libembree-dev libpng-dev libstb-dev libpugixml-dev nlohmann-json3-dev)
+build_libraries=(tao-pegtl-dev libcli11-dev libfmt-dev libembree-dev libpng-dev libstb-dev libpugixml-dev nlohmann-json3-dev
+    libboost1.81-dev libeigen3-dev)
 film_tools=(ffmpeg:ffmpeg)
 test_tools=(python3:python3)
-test_libraries=(doctest-dev libtinygltf-dev libeigen3-dev librapidcheck-dev libbenchmark-dev)
+test_libraries=(doctest-dev libtinygltf-dev librapidcheck-dev libbenchmark-dev)
 reader_tools=(node:nodejs npm:npm)
 strict_tools=(clang-format:clang-format)
 

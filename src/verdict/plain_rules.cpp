@@ -268,6 +268,10 @@ PlainFinding PlainRules::formula(const net::Rule& rule) {
         return unknown();
     }
     const bool linear = q.formula.logic == proof::Temporal::Logic::kLtl;
+    // Where a net is dead the portfolio has no next step, as the contest means it; here it stands.
+    if (!linear && q.formula.has_next && decide_dead(session_).truth != proof::Truth::kFalse) {
+        return unknown();
+    }
     const Decision d = decide_logic(session_, {&q, 1})[0];
     if (d.truth == proof::Truth::kUnknown) {
         return unknown();

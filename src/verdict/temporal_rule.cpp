@@ -140,7 +140,10 @@ Finding check_temporal(const net::Net& net, const Obligation& o, const GraphView
         f.reason = "a formula with `next` asks for single steps, which only exact states have";
         return f;
     }
-    Moments moments = moments_of(*view.timed, o, false);
+    // Single steps of branching time: standing in the last state is one, too.
+    const bool steps =
+        o.temporal->has_next && o.temporal->logic == proof::Temporal::Logic::kCtl;
+    Moments moments = moments_of(*view.timed, o, steps);
     const proof::Graph& graph = moments.graph;
     const std::vector<std::uint32_t> atoms = numbers(o.operands.size());
     constexpr std::uint64_t kMostEdges = 40'000'000;

@@ -153,8 +153,8 @@ inline Structure word(std::vector<Moment> letters, std::size_t back) {
     return s;
 }
 
-// A net without time: each marking with the firing that led there; where it is dead, one more step
-// in which nothing has fired.
+// A net without time: each marking with the firing that led there; where it is dead it stands for
+// ever, and nothing has just fired.
 inline Structure structure(const test::NaiveGraph& g) {
     Structure s;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
@@ -175,7 +175,7 @@ inline Structure structure(const test::NaiveGraph& g) {
         for (const auto& [t, to] : g.edges[marking[i]]) {
             next.push_back(node(to, t));
         }
-        if (next.empty() && s.moments[i].fired != kNothing) {
+        if (next.empty()) {
             next.push_back(node(marking[i], kNothing));
         }
         s.next[i] = std::move(next);
