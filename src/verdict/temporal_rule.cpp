@@ -141,8 +141,7 @@ Finding check_temporal(const net::Net& net, const Obligation& o, const GraphView
         return f;
     }
     // Single steps of branching time: standing in the last state is one, too.
-    const bool steps =
-        o.temporal->has_next && o.temporal->logic == proof::Temporal::Logic::kCtl;
+    const bool steps = o.temporal->has_next && o.temporal->logic == proof::Temporal::Logic::kCtl;
     Moments moments = moments_of(*view.timed, o, steps);
     const proof::Graph& graph = moments.graph;
     const std::vector<std::uint32_t> atoms = numbers(o.operands.size());
