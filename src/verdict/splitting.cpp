@@ -33,31 +33,6 @@ bool same_numbers(const net::NetDraft& lowered, const net::Net& net) {
 
 }  // namespace
 
-bool of_one(const Asked& asked) {
-    return asked.question == Question::kRule && asked.rule.kind == net::RuleKind::kDeadlockFree;
-}
-
-bool splits(const Asked& asked) {
-    if (asked.question == Question::kOneOfEach || asked.question == Question::kJoins) {
-        return false;
-    }
-    if (asked.question != Question::kRule) {
-        return true;
-    }
-    switch (asked.rule.kind) {
-        case net::RuleKind::kDeadlockFree:
-        case net::RuleKind::kEnds:
-            return true;
-        case net::RuleKind::kLive:
-        case net::RuleKind::kQuasiLive:
-            return asked.rule.transitions.empty();
-        case net::RuleKind::kBounded:
-            return asked.rule.operands.empty();
-        default:
-            return false;
-    }
-}
-
 Splitting::Splitting(const net::Net& net, const net::NetDraft& draft, const stage::Play* play,
                      const std::vector<const Asked*>& rules)
     : net_(&net), play_(play) {

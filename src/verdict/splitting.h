@@ -13,11 +13,6 @@
 
 namespace puppetri::verdict {
 
-// Each part can be asked by itself, and the answers put together.
-bool splits(const Asked& asked);
-// It is enough that one part keeps it.
-bool of_one(const Asked& asked);
-
 class Splitting {
  public:
     // One part: the whole net.
