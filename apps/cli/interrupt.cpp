@@ -10,6 +10,10 @@ namespace puppetri::cli {
 namespace {
 
 volatile std::sig_atomic_t asked = 0;
+// A handler of signals may touch atomics that need no lock.
+std::atomic<std::atomic<bool>*> flag_to_set{nullptr};
+static_assert(std::atomic<bool>::is_always_lock_free &&
+              std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
 extern "C" void on_interrupt(int signal) {
     if (asked != 0) {
@@ -17,6 +21,9 @@ extern "C" void on_interrupt(int signal) {
         std::_Exit(128 + signal);
     }
     asked = 1;
+    if (std::atomic<bool>* flag = flag_to_set.load()) {
+        flag->store(true);
+    }
 }
 
 }  // namespace
@@ -36,5 +43,12 @@ void catch_interrupts() {
 }
 
 bool interrupted() { return asked != 0; }
+
+void set_when_interrupted(std::atomic<bool>* flag) {
+    flag_to_set.store(flag);
+    if (flag != nullptr && asked != 0) {
+        flag->store(true);
+    }
+}
 
 }  // namespace puppetri::cli

@@ -2,6 +2,7 @@
 // Ctrl-C: the first asks the work to end cleanly with what is known, the second ends the program at
 // once.
 #pragma once
+#include <atomic>
 
 namespace puppetri::cli {
 
@@ -11,5 +12,9 @@ void catch_interrupts();
 
 // Whether the user asked to stop. Long loops ask this now and then and end cleanly.
 bool interrupted();
+
+// The flag is set, too, when the interruption comes (or has come); null: none any more. One flag at
+// a time.
+void set_when_interrupted(std::atomic<bool>* flag);
 
 }  // namespace puppetri::cli

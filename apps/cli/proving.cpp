@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <thread>
 
 #include "interrupt.h"
 #include "puppetri/base/text.h"
@@ -156,8 +155,6 @@ Result<verdict::ProveOptions, int> proving_options(const Arguments& arguments) {
 
 struct ProvingProgress::Data {
     std::atomic<bool> cancelled{false};
-    std::atomic<bool> over{false};
-    std::thread watcher;
     double shown_s = -1;
     bool drawn = false;
 };
@@ -197,20 +194,11 @@ ProvingProgress::ProvingProgress(verdict::ProveOptions& options) : data_(std::ma
                      short_number(static_cast<double>(p.waiting)).c_str());
         std::fflush(stderr);
     };
-    // The handler of the signal may only set a flag: somebody has to carry it over.
-    data_->watcher = std::thread([data = data_.get()] {
-        while (!data->over.load()) {
-            if (interrupted()) {
-                data->cancelled.store(true);
-            }
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-    });
+    set_when_interrupted(&data_->cancelled);
 }
 
 ProvingProgress::~ProvingProgress() {
-    data_->over.store(true);
-    data_->watcher.join();
+    set_when_interrupted(nullptr);
     if (data_->drawn) {
         std::fputs("\r\033[K", stderr);
     }
