@@ -187,6 +187,24 @@ TEST_CASE("temporal rules about firings are what their definitions say, without 
     CHECK(witnesses > 100);
 }
 
+TEST_CASE(
+    "where a net is dead it stands: one step of EX and AX, whatever the formula asks for [unit]") {
+    const ProvedScene s(R"(
+place a tokens 1
+place b
+go: a -> b
+rule stays  ctl AG(b implies EX(b))
+rule all    ctl AG(b implies AX(b))
+rule firing ctl AG(b implies EX(b and not go))
+rule either ctl AG(b implies (EX(b) or go))
+rule gone   ctl AG(b implies EX(a))
+)");
+    for (const char* rule : {"stays", "all", "firing", "either"}) {
+        CHECK(s.of(rule).answer == Answer::kProved);
+    }
+    CHECK(s.of("gone").answer == Answer::kRefuted);
+}
+
 class AnyChooser final : public net::Chooser {
  public:
     explicit AnyChooser(RandomStream& stream) : stream_(stream) {}
