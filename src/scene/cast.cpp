@@ -3,6 +3,7 @@
 // order; of an imported file comes what its nets name.
 #include "elaboration.h"
 #include "puppetri/figure/palette.h"
+#include "puppetri/notation/notation.h"
 
 namespace puppetri::scene {
 namespace {
@@ -335,9 +336,12 @@ void Elaboration::complete_blocks() {
             add_camera(*block);
         } else if (is_movement_kind(block->kind.text)) {
             define_movement(*block);
-        } else {
-            unknown(block->kind.span, "kind of block", block->kind.text,
-                    {"camera", "movement", "keyframes", "clip"});
+        } else if (notation::find_notation(block->kind.text) == nullptr) {
+            std::vector<std::string> known{"camera", "movement", "keyframes", "clip"};
+            for (const notation::Notation& n : notation::notations()) {
+                known.emplace_back(n.kind);
+            }
+            unknown(block->kind.span, "kind of block", block->kind.text, known);
         }
     }
 }

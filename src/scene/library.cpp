@@ -4,6 +4,7 @@
 #include "puppetri/lang/parse.h"
 #include "puppetri/lang/signature.h"
 #include "puppetri/lang/units.h"
+#include "puppetri/notation/notation.h"
 
 namespace puppetri::scene {
 namespace {
@@ -65,10 +66,37 @@ class Loader {
         for (const lang::Block& block : body.blocks) {
             if (is_movement_kind(block.kind.text) && !block.name.text.empty()) {
                 declare(names, block.name, {.file = number, .block = &block});
+            } else if (const auto* notation = notation::find_notation(block.kind.text)) {
+                lower(*notation, block, number, names);
             }
         }
         library_.visible.push_back(std::move(names));
         return number;
+    }
+
+    // A block of a notation becomes a net like those that are written as such.
+    void lower(const notation::Notation& notation, const lang::Block& block, std::uint32_t number,
+               std::map<std::string, Declaration>& names) {
+        if (block.name.text.empty()) {
+            library_.diagnostics.push_back(
+                {.code = "missing-name",
+                 .where = library_.where(block.span),
+                 .element = block.kind.text,
+                 .message = "nothing can use this without a name",
+                 .remedy = "write " + block.kind.text + " NAME { ... }"});
+            library_.readable = false;
+            return;
+        }
+        notation::Lowered lowered = notation::lower(notation, block, library_.files[number]);
+        if (has_errors(lowered.diagnostics)) {
+            broken_[number] = true;
+            library_.readable = false;
+        }
+        for (Diagnostic& d : lowered.diagnostics) {
+            library_.diagnostics.push_back(std::move(d));
+        }
+        library_.lowered.push_back(std::move(lowered.net));
+        declare(names, block.name, {.file = number, .net = &library_.lowered.back()});
     }
 
     void declare(std::map<std::string, Declaration>& names, const lang::Name& name,

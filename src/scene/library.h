@@ -27,8 +27,9 @@ struct Declaration {
 };
 
 struct Library {
-    FileSource* source = nullptr;  // what it was read from: gives characters and clips as well
-    std::deque<lang::File> files;  // by number, as in lang::Span::file; addresses stay
+    FileSource* source = nullptr;   // what it was read from: gives characters and clips as well
+    std::deque<lang::File> files;   // by number, as in lang::Span::file; addresses stay
+    std::deque<lang::Net> lowered;  // what blocks of notations stand for
     std::vector<std::map<std::string, Declaration>> visible;  // by file
     std::vector<std::map<std::string, std::string>>
         texts;  // by file: of its event files, by the path as written

@@ -151,9 +151,17 @@ Loaded load_all(FileSource& files, const std::string& path,
         return out;
     }
     const lang::File& root = library.files[0];
+    std::vector<const lang::Net*> nets;  // that the file declares
+    for (const lang::Net& net : root.body.nets) {
+        nets.push_back(&net);
+    }
+    for (const lang::Net& net : library.lowered) {
+        if (net.span.file == 0) {
+            nets.push_back(&net);
+        }
+    }
     const bool is_library = root.header.scene_span.begin == root.header.scene_span.end &&
-                            root.body.places.empty() && root.body.uses.empty() &&
-                            !root.body.nets.empty();
+                            root.body.places.empty() && root.body.uses.empty() && !nets.empty();
     Elaboration scene(library);
     if (is_library && !also_unused) {
         out.diagnostics.push_back({.code = "no-scene",
@@ -161,7 +169,7 @@ Loaded load_all(FileSource& files, const std::string& path,
                                    .element = "file " + path,
                                    .message = "this file is a library of nets and has no scene",
                                    .remedy = "import its nets into a scene: `import " +
-                                             root.body.nets[0].name.text + " from \"...\"`"});
+                                             nets[0]->name.text + " from \"...\"`"});
         return out;
     }
     if (!is_library) {
@@ -182,12 +190,12 @@ Loaded load_all(FileSource& files, const std::string& path,
         }
     }
     if (also_unused) {
-        for (const lang::Net& net : root.body.nets) {
-            if (scene.used(net)) {
+        for (const lang::Net* net : nets) {
+            if (scene.used(*net)) {
                 continue;
             }
             Elaboration alone(library);
-            alone.elaborate_alone({.file = 0, .net = &net});
+            alone.elaborate_alone({.file = 0, .net = net});
             for (Diagnostic& d : alone.diagnostics) {
                 if (!told_already(out.diagnostics, d)) {
                     out.diagnostics.push_back(std::move(d));

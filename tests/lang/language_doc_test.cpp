@@ -11,21 +11,21 @@
 using namespace puppetri;
 using namespace puppetri::lang;
 
-TEST_CASE("every example of docs/language.md parses [golden]") {
+TEST_CASE("every example of the language's pages parses [golden]") {
     const std::vector<testing::DocExample> examples = testing::doc_examples();
     REQUIRE(examples.size() >= 20);
     for (const testing::DocExample& example : examples) {
-        const Parsed result = parse(example.text, "docs/language.md");
+        const Parsed result = parse(example.text, example.page);
         for (const Diagnostic& d : result.diagnostics) {
-            FAIL_CHECK("example at line "
-                       << example.line << ": "
+            FAIL_CHECK(example.page
+                       << ", example at line " << example.line << ": "
                        << format_diagnostic(d, result.file.line_text(d.where.line), false));
         }
         CHECK_MESSAGE(testing::broken_law(example.text) == "", example.text);
-        const Checked<std::string> canonical = format(example.text, "docs/language.md");
+        const Checked<std::string> canonical = format(example.text, example.page);
         REQUIRE(canonical.has_value());
         CHECK_MESSAGE(canonical.value() == example.text,
-                      "at line " << example.line << " of the page");
+                      "at line " << example.line << " of " << example.page);
     }
 }
 

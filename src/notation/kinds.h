@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Who lowers which kind of block: one function, and one source file, for each. A function gets the
+// block and the file that it stands in, finds name, parameters and span of the net filled in, and
+// adds the body and its diagnostics.
+#pragma once
+#include "puppetri/notation/notation.h"
+
+namespace puppetri::notation {
+
+void lower_automaton(const lang::Block& block, const lang::File& file, Lowered& out);
+
+}  // namespace puppetri::notation

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "line.h"
+
+namespace puppetri::notation {
+
+using lang::Expr;
+using lang::ExprKind;
+
+void Teller::tell(Severity severity, std::string code, lang::Span where, std::string message,
+                  std::string remedy) {
+    out_.diagnostics.push_back({severity, std::move(code), file_.where(where), element_,
+                                std::move(message), std::move(remedy)});
+}
+
+bool Line::word(std::string_view text) {
+    const Expr* e = next();
+    if (e == nullptr || e->kind != ExprKind::kPath || e->path.steps.size() != 1 ||
+        e->path.steps[0].text != text || !e->path.steps[0].index.empty()) {
+        return false;
+    }
+    ++at_;
+    return true;
+}
+
+bool Line::symbol(std::string_view text) {
+    const Expr* e = next();
+    if (e == nullptr || e->kind != ExprKind::kSymbol || e->text != text) {
+        return false;
+    }
+    ++at_;
+    return true;
+}
+
+lang::Caption Line::caption() {
+    const Expr* e = next();
+    if (e == nullptr || e->kind != ExprKind::kString) {
+        return {};
+    }
+    ++at_;
+    return {e->text, e->span};
+}
+
+void Line::missing(std::string_view wanted) {
+    const Expr* e = next();
+    teller_.error(
+        "syntax", e != nullptr ? e->span : property_.span,
+        std::string(wanted) + " is wanted " + (e != nullptr ? "here" : "at the end of this line"),
+        "write " + std::string(wanted));
+}
+
+const Expr* Line::value(std::string_view wanted) {
+    const Expr* e = next();
+    if (e == nullptr || e->kind == ExprKind::kSymbol) {
+        missing(wanted);
+        return nullptr;
+    }
+    ++at_;
+    return e;
+}
+
+const lang::Path* Line::path(std::string_view wanted) {
+    const Expr* e = next();
+    if (e == nullptr || e->kind != ExprKind::kPath) {
+        missing(wanted);
+        return nullptr;
+    }
+    ++at_;
+    return &e->path;
+}
+
+void Line::finish(std::string_view forms) {
+    if (const Expr* e = next(); e != nullptr) {
+        teller_.error("syntax", e->span, "this is no part of such a line",
+                      "write " + std::string(forms));
+        at_ = property_.values.size();
+    }
+}
+
+}  // namespace puppetri::notation

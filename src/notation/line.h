@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Reading one line of a block, `NAME VALUE VALUE ...`, from left to right. Words with a meaning are
+// values like others until a notation asks for them.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "puppetri/lang/syntax.h"
+#include "puppetri/notation/notation.h"
+
+namespace puppetri::notation {
+
+// Where a lowering tells its defects.
+class Teller {
+ public:
+    Teller(const lang::Block& block, const lang::File& file, Lowered& out)
+        : element_(block.kind.text + " " + block.name.text), file_(file), out_(out) {}
+
+    void error(std::string code, lang::Span where, std::string message, std::string remedy) {
+        tell(Severity::kError, std::move(code), where, std::move(message), std::move(remedy));
+    }
+    void warn(std::string code, lang::Span where, std::string message, std::string remedy) {
+        tell(Severity::kWarning, std::move(code), where, std::move(message), std::move(remedy));
+    }
+
+ private:
+    void tell(Severity severity, std::string code, lang::Span where, std::string message,
+              std::string remedy);
+
+    std::string element_;
+    const lang::File& file_;
+    Lowered& out_;
+};
+
+class Line {
+ public:
+    Line(const lang::Property& property, Teller& teller) : property_(property), teller_(teller) {}
+
+    // What the line begins with.
+    const lang::Path& name() const { return property_.name; }
+    lang::Span span() const { return property_.span; }
+
+    bool done() const { return at_ >= property_.values.size(); }
+    // Takes the next value if it is this word, or this symbol (`->`, `:`, `=`, `:=`).
+    bool word(std::string_view text);
+    bool symbol(std::string_view text);
+    // Takes a text in quotes; empty when the next value is none.
+    lang::Caption caption();
+    // Takes a value; tells that `wanted` is missing and gives null where there is none.
+    const lang::Expr* value(std::string_view wanted);
+    // Takes a value that is a name or a path.
+    const lang::Path* path(std::string_view wanted);
+    // Tells what is left over, with the forms that the line may have.
+    void finish(std::string_view forms);
+
+ private:
+    const lang::Expr* next() const { return done() ? nullptr : &property_.values[at_]; }
+    void missing(std::string_view wanted);
+
+    const lang::Property& property_;
+    Teller& teller_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace puppetri::notation

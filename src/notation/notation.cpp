@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "puppetri/notation/notation.h"
+
+#include <algorithm>
+#include <array>
+
+#include "kinds.h"
+
+namespace puppetri::notation {
+namespace {
+
+// In alphabetical order.
+constexpr std::array kNotations = {
+    Notation{"automaton", "a finite automaton whose states last", lower_automaton},
+};
+
+}  // namespace
+
+std::span<const Notation> notations() { return kNotations; }
+
+const Notation* find_notation(std::string_view kind) {
+    const auto found = std::find_if(kNotations.begin(), kNotations.end(),
+                                    [&](const Notation& n) { return n.kind == kind; });
+    return found == kNotations.end() ? nullptr : &*found;
+}
+
+Lowered lower(const Notation& notation, const lang::Block& block, const lang::File& file) {
+    Lowered out;
+    out.net.name = block.name;
+    out.net.parameters = block.parameters;
+    out.net.span = block.span;
+    notation.lower(block, file, out);
+    return out;
+}
+
+}  // namespace puppetri::notation

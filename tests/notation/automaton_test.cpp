@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "playing.h"
+#include "puppetri/notation/notation.h"
+
+namespace puppetri::notation {
+namespace {
+
+constexpr const char* kLight = R"(use light(button) as l
+event button at 5 s, 50 s
+automaton light(button: event) {
+  green "go"  takes 20 s starts
+  yellow      takes 3 s
+  red         takes 17 s
+  green -> yellow on button
+  yellow -> red
+  red -> green
+}
+)";
+
+TEST_CASE("an automaton stays in a state for its time and leaves it on its event [unit]") {
+    CHECK(log_of(kLight, 100) == std::vector<std::string>{"50 s l.green_to_yellow",
+                                                          "53 s l.yellow_to_red",
+                                                          "70 s l.red_to_green"});
+}
+
+TEST_CASE("an automaton is the net that somebody would write for it [law]") {
+    const std::string net = R"(use light(button) as l
+event button at 5 s, 50 s
+net light(button: event) {
+  public place green takes 20 s tokens 1
+  public place yellow takes 3 s
+  public place red takes 17 s
+  public green_to_yellow: green -> yellow on button
+  public yellow_to_red: yellow -> red
+  public red_to_green: red -> green
+}
+)";
+    CHECK(log_of(kLight, 1000) == log_of(net, 1000));
+    CHECK(from_text(kLight).net.hash() == from_text(net).net.hash());
+}
+
+TEST_CASE("defects of an automaton are told where they stand [unit]") {
+    const Diagnostics list = defects_of(R"(use m
+automaton m {
+  a takes 1 s
+  b takes 1 s starts quickly
+  a -> c
+  b -> b
+}
+)");
+    std::vector<std::pair<std::uint32_t, std::string>> got;
+    for (const Diagnostic& d : list) {
+        got.emplace_back(d.where.line, d.code);
+        CHECK_FALSE(d.remedy.empty());
+        CHECK(d.element == "automaton m");
+    }
+    CHECK(got == std::vector<std::pair<std::uint32_t, std::string>>{
+                     {5, "never-entered"}, {6, "syntax"}, {7, "unknown-name"}});
+}
+
+TEST_CASE("every kind of notation is found, in alphabetical order [unit]") {
+    std::string_view before;
+    for (const Notation& n : notations()) {
+        CHECK(before < n.kind);
+        CHECK(find_notation(n.kind) == &n);
+        before = n.kind;
+    }
+    CHECK(find_notation("camera") == nullptr);
+}
+
+}  // namespace
+}  // namespace puppetri::notation
