@@ -222,7 +222,7 @@ Checked<io::ClipFile> load_tuples(const Arguments& arguments, double rate_hz) {
     if (!text) {
         return failure(path, text.error().message, "name a file that is there");
     }
-    PUP_TRY(const std::vector<io::KeyframeTuple> tuples, io::read_tuples(*text, path));
+    PUP_TRY(const std::vector<notation::KeyframeTuple> tuples, notation::read_tuples(*text, path));
     PUP_TRY(const io::ClipFile poses, io::load_clips(poses_path));
     // A frame is one of the poses' file (frames 24), or of --fps.
     const double rate = rate_hz > 0 ? rate_hz : poses.frame_s > 0 ? 1 / poses.frame_s : 24;

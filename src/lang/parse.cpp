@@ -561,7 +561,7 @@ void tell_control_characters(const File& file, std::uint32_t number, Diagnostics
 
 }  // namespace
 
-Parsed parse(std::string_view text, std::string_view filename, std::uint32_t file) {
+Parsed open_text(std::string_view text, std::string_view filename, std::uint32_t file) {
     Parsed out;
     out.file.filename = std::string(filename);
     const auto whole_file = [&](std::string code, std::string message, std::string remedy) {
@@ -587,6 +587,13 @@ Parsed parse(std::string_view text, std::string_view filename, std::uint32_t fil
         Report(out.file, file, out.diagnostics)
             .error(at, at + 1, "invalid-utf8", "", "this is not UTF-8 text",
                    "save the file as UTF-8");
+    }
+    return out;
+}
+
+Parsed parse(std::string_view text, std::string_view filename, std::uint32_t file) {
+    Parsed out = open_text(text, filename, file);
+    if (has_errors(out.diagnostics)) {
         return out;
     }
     tell_control_characters(out.file, file, out.diagnostics);

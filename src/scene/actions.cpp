@@ -284,6 +284,12 @@ std::optional<motion::ArgumentValue> Elaboration::bind_argument(const lang::Expr
         return Vec3{x->at[0], x->at[1], x->at[2]};
     }
     if (auto* x = std::get_if<MovementTerm>(&term); x != nullptr && types.has(kMovement)) {
+        if (!motion::signature_of(x->call, SubjectKind::kActor).as_argument) {
+            error("wrong-type", value.span,
+                  x->call.movement + " moves more than arms and cannot be an argument",
+                  "arguments are movements of arms alone, such as carry(ball)");
+            return std::nullopt;
+        }
         out.nested.push_back(std::move(x->call));
         return motion::NestedCall{static_cast<std::uint32_t>(out.nested.size() - 1)};
     }

@@ -65,24 +65,12 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
             }
             return call_function(e, *f, scope);
         }
-        if (is_argument_movement(name, e.span.file)) {
-            return movement_value(e, e.path, scope);
-        }
         if (const OwnDefinition* own = own_movement(name, e.span.file)) {
-            if (own->movement != nullptr) {
-                error("wrong-type", e.path.span,
-                      name + " moves more than arms and cannot be an argument",
-                      "arguments are movements of arms alone");
-            }
-            return Nothing{};
+            // What is wrong with it has been told.
+            return own->movement != nullptr ? movement_value(e, e.path, scope) : Term{Nothing{}};
         }
-        for (const motion::MovementSignature& m : motion::movement_library()) {
-            if (m.name == name) {
-                error("wrong-type", e.path.span,
-                      name + " moves a whole figure and cannot be an argument",
-                      "arguments are movements of arms, such as carry(ball)");
-                return Nothing{};
-            }
+        if (motion::find_movement(name, motion::SubjectKind::kActor) != nullptr) {
+            return movement_value(e, e.path, scope);
         }
     }
     std::vector<std::string> known;
@@ -90,7 +78,7 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
         known.emplace_back(f.name);
     }
     for (const motion::MovementSignature& m : motion::movement_library()) {
-        if (m.as_argument) {
+        if (motion::find_movement(m.name, motion::SubjectKind::kActor) != nullptr) {
             known.emplace_back(m.name);
         }
     }

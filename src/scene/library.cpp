@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "library.h"
 
-#include "puppetri/lang/parse.h"
 #include "puppetri/lang/signature.h"
 #include "puppetri/lang/units.h"
+#include "puppetri/notation/foreign_file.h"
 #include "puppetri/notation/notation.h"
 
 namespace puppetri::scene {
@@ -43,7 +43,7 @@ class Loader {
  private:
     std::uint32_t open(const std::string& path, const std::string& text) {
         const auto number = static_cast<std::uint32_t>(library_.files.size());
-        lang::Parsed parsed = lang::parse(text, path, number);
+        lang::Parsed parsed = notation::parse(text, path, number);
         broken_.push_back(has_errors(parsed.diagnostics));
         library_.readable = library_.readable && !broken_.back();
         for (Diagnostic& d : parsed.diagnostics) {

@@ -9,6 +9,7 @@
 
 using namespace puppetri;
 using namespace puppetri::io;
+using namespace puppetri::notation;
 
 namespace {
 

@@ -33,6 +33,10 @@ struct Parsed {
 // `file` is the number that the tree's spans carry; `filename` is for messages only.
 Parsed parse(std::string_view text, std::string_view filename, std::uint32_t file = 0);
 
+// The text of a file with its lines and no statement: what readers of other notations begin with.
+// Fails with "file-too-large" or "invalid-utf8".
+Parsed open_text(std::string_view text, std::string_view filename, std::uint32_t file = 0);
+
 // All words with a meaning of their own, in alphabetical order, for completion and colours. They
 // are keywords only where they can be.
 std::span<const std::string_view> keywords();

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "puppetri/notation/foreign_file.h"
+
+#include <algorithm>
+#include <array>
+
+#include "foreign_formats.h"
+#include "puppetri/base/text.h"
+
+namespace puppetri::notation {
+namespace {
+
+// In alphabetical order.
+constexpr std::array kFormats = {
+    ForeignFormat{".tuples", "which keyframe an object reaches when", read_tuple_file},
+};
+
+}  // namespace
+
+std::span<const ForeignFormat> foreign_formats() { return kFormats; }
+
+const ForeignFormat* find_foreign_format(std::string_view path) {
+    const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const ForeignFormat& f) {
+        return path.size() > f.ending.size() &&
+               path.substr(path.size() - f.ending.size()) == f.ending;
+    });
+    return found == kFormats.end() ? nullptr : &*found;
+}
+
+lang::Parsed parse(std::string_view text, std::string_view path, std::uint32_t file) {
+    const ForeignFormat* format = find_foreign_format(path);
+    if (format == nullptr) {
+        return lang::parse(text, path, file);
+    }
+    lang::Parsed out = lang::open_text(text, path, file);
+    if (!has_errors(out.diagnostics)) {
+        format->read(out, file);
+    }
+    return out;
+}
+
+}  // namespace puppetri::notation

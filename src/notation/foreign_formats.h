@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Who reads which foreign format: one function, and one source file, for each
+// (notation/foreign_file.h says what it gets and gives).
+#pragma once
+#include "puppetri/notation/foreign_file.h"
+
+namespace puppetri::notation {
+
+void read_tuple_file(lang::Parsed& out, std::uint32_t file);
+
+}  // namespace puppetri::notation
