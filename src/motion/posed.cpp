@@ -364,7 +364,8 @@ class Posed final : public Movement {
         own(0, first, scratch());
         own(kMoment, later, scratch());
         const ControlsRate rate = rate_between(first, later, kMoment);
-        const double blend = std::fmin(spec_.settle_s, std::fmax(0.1, duration.seconds()));
+        const double settle = spec_.reached_s > 0 ? spec_.reached_s / pace_ : spec_.settle_s;
+        const double blend = std::fmin(settle, std::fmax(0.1, duration.seconds()));
         blend_s_ = blend;
         join_ = InertialFigure(context, first, later, blend);
         pelvis_ = {context.now.pelvis.position_world - first.pelvis.position_world,

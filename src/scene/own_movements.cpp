@@ -2,6 +2,7 @@
 // Movements that a file defines: `movement nod(me: actor) { ... }`. What `does` may call beside the
 // library, with the same signatures and the same errors.
 #include <algorithm>
+#include <limits>
 
 #include "elaboration.h"
 #include "formula_compiler.h"
@@ -104,6 +105,7 @@ class FormulaBlock {
         if (!good) {
             return out;
         }
+        formula_.spec.reached_s = first_keys_s();
         out.limbs_of_definition(signature_, formula_.spec);
         out.dof_spans = std::move(dof_spans_);
         const std::vector<std::string> dofs = formula_.spec.dofs;
@@ -154,6 +156,17 @@ class FormulaBlock {
                        {"takes", "at", "interpolation", "loop",
                         (me_.empty() ? "me" : me_) + ".head.flex"});
         }
+    }
+
+    // When the first keys come, if all that it drives has keys and none at the begin.
+    double first_keys_s() const {
+        double first = std::numeric_limits<double>::infinity();
+        for (const auto* lists : {&formula_.dof_keys, &formula_.path_keys}) {
+            for (const std::vector<motion::FormulaKey>& keys : *lists) {
+                first = std::fmin(first, keys.empty() ? 0 : keys.front().t_s);
+            }
+        }
+        return std::isfinite(first) ? first : 0;
     }
 
     void form(const lang::Property& p, const std::string& example) {

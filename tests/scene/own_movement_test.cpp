@@ -329,6 +329,27 @@ TEST_CASE("keyframes pose what their keys say, by each interpolation [oracle]") 
     CHECK(value("interpolation ease", 1.5) == doctest::Approx(40).epsilon(1e-4));
 }
 
+TEST_CASE("keys without one at the begin are a pose to be reached when the first says [law]") {
+    // 1 s of its own in a place of 2 s: begins at 1 s, reached at 3 s.
+    const Scene scene =
+        one("keyframes m(me: actor) { takes 1 s; at 1 s: me.left_elbow.flex = 100 deg }",
+            "m() takes 2 s");
+    const Performed p = performed(scene);
+    const double start = dof_value(*p.performance, "left_elbow.flex", 1);
+    CHECK(dof_value(*p.performance, "left_elbow.flex", 3) ==
+          doctest::Approx(radians(100)).epsilon(1e-6));
+    double last = start, fastest = 0;
+    for (int i = 1; i <= 480; ++i) {
+        const double now = dof_value(*p.performance, "left_elbow.flex", 1 + i / 240.0);
+        CHECK(now >= last - 1e-6);  // on its way all the time
+        fastest = std::fmax(fastest, (now - last) * 240);
+        last = now;
+    }
+    // As slow as the time allows: nowhere faster than 2.2 times the mean.
+    CHECK(fastest < 2.2 * (radians(100) - start) / 2);
+    CHECK(fastest > 1.2 * (radians(100) - start) / 2);
+}
+
 TEST_CASE("wrong keyframes are told with place and remedy [hostile]") {
     const auto keys = [](const char* body) {
         return std::string("keyframes m(me: actor) {\n takes 1 s\n") + body + "\n}";

@@ -54,6 +54,9 @@ struct PosedSpec {
     };
     std::vector<Event> events;  // within the duration
     double settle_s = 0.35;     // over which the state that was found fades
+    // Above 0: what the source says before this time of its own is no motion yet. The figure is on
+    // its way from where it was found, and has reached the source's pose then.
+    double reached_s = 0;
     // A place that gives it more time than its duration: play slower, or rest at the end.
     bool stretches = true;
     LimbSet also = {};  // what else it drives: limbs that stand alive, unmoved by the source
