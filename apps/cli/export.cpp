@@ -15,6 +15,7 @@
 #include "puppetri/io/events_json.h"
 #include "puppetri/io/gltf_writer.h"
 #include "puppetri/io/json_writer.h"
+#include "puppetri/io/keyframe_tuples.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/render/camera.h"
 #include "puppetri/scene/perform.h"
@@ -63,9 +64,9 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
         const std::string kind = ending_of(path);
         if (kind == ".fbx") {
             problems.push_back(kNoFbx);
-        } else if (kind != ".glb" && kind != ".gltf" && kind != ".bvh") {
+        } else if (kind != ".glb" && kind != ".gltf" && kind != ".bvh" && kind != ".tuples") {
             problems.push_back("cannot tell the format of " + path +
-                               ": name a file .glb, .gltf or .bvh");
+                               ": name a file .glb, .gltf, .bvh or .tuples");
         }
     }
     if (arguments.given("--fps")) {
@@ -199,6 +200,13 @@ Status write_one(const Plan& plan, const scene::Scene& scene, const stage::Perfo
     const std::string stem = path.substr(0, path.size() - kind.size());
     PUP_TRY(Ok made, io::make_parent_folders(path));
     static_cast<void>(made);
+    if (kind == ".tuples") {
+        const auto tuples = io::tuples_of(performance, plan.take.rate);
+        PUP_TRY(Ok done, io::write_file(path, notation::make_tuples(tuples)));
+        static_cast<void>(done);
+        written.push_back({path, std::to_string(tuples.size()) + " keyframes reached"});
+        return Ok{};
+    }
     PUP_TRY(const std::vector<io::Take> takes, takes_for(plan, performance, kind == ".bvh"));
     if (kind == ".bvh") {
         PUP_TRY(const std::vector<std::string> paths, io::write_bvh(path, takes.front(), plan.bvh));
@@ -287,11 +295,12 @@ int run(const Arguments& arguments) {
 
 Command export_command() {
     return {
-        "export", "write a take for other programs: glTF, BVH, markers",
+        "export", "write a take for other programs: glTF, BVH, markers, tuples",
         "The ending of FILE says the format: .glb, .gltf (with a .bin beside it), .bvh (one file "
         "per figure:\n"
-        "NAME_ana.bvh). The markers (foot strikes, releases, catches) also go to "
-        "NAME.events.json.\n"
+        "NAME_ana.bvh), .tuples (which movement ended when, FRAME OBJECT EVENT). The markers (foot "
+        "strikes,\n"
+        "releases, catches) also go to NAME.events.json.\n"
         "FBX is not made: its only complete writer is closed. Write a .glb, open it in Blender\n"
         "(File > Import > glTF 2.0) and export FBX from there.\n\n"
         "Examples:\n"

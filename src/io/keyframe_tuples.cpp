@@ -56,6 +56,24 @@ void add_keys(std::vector<motion::ClipTrack<Key>>& to,
 
 }  // namespace
 
+std::vector<KeyframeTuple> tuples_of(const stage::Performance& performance, FrameRate rate) {
+    std::map<std::pair<std::int64_t, std::string>, const stage::ScoreEntry*> last;
+    for (const stage::ScoreEntry& row : performance.score()) {
+        if (row.actor.empty() || row.end > performance.duration() || row.left < row.end) {
+            continue;
+        }
+        const stage::ScoreEntry*& told = last[{rate.nearest_frame(row.end), row.actor}];
+        if (told == nullptr || told->start <= row.start) {
+            told = &row;
+        }
+    }
+    std::vector<KeyframeTuple> tuples;
+    for (const auto& [when, row] : last) {
+        tuples.push_back({when.first, when.second, row->movement});
+    }
+    return tuples;
+}
+
 Checked<ClipFile> absolute_keyframes(std::span<const KeyframeTuple> tuples, const ClipFile& poses,
                                      double rate_hz, motion::Interpolation between,
                                      const std::string& path) {

@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: MIT
-// From the tuples of a run (notation/keyframe_tuples.h) and poses that were made once in a local
-// frame, the absolute keyframes of a whole scene.
+// From a performance to tuples (notation/keyframe_tuples.h); and from tuples and poses that were
+// made once in a local frame to the absolute keyframes of a whole scene.
 // Source  P. Fishwick and H. Porr, "Using discrete event modeling for effective computer animation
 //         control", Winter Simulation Conference 1991, section 4.2.
 #pragma once
 #include <span>
 #include <string>
+#include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/base/frame_rate.h"
 #include "puppetri/io/clip_file.h"
 #include "puppetri/notation/keyframe_tuples.h"
+#include "puppetri/stage/performance.h"
 
 namespace puppetri::io {
+
+// What a performance did, as tuples: each movement of an actor that came to its end before the
+// token left, at the frame of that end, by the movement's name. Where two end in one frame (arms
+// and legs apart) the one that began last is told.
+std::vector<notation::KeyframeTuple> tuples_of(const stage::Performance& performance,
+                                               FrameRate rate);
 
 // One clip per object, in the order in which they first come. At each tuple the object has reached
 // the pose that the event names, a clip of `poses` (its begin counts); in between its tracks go on
