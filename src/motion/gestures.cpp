@@ -7,6 +7,7 @@
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/posed.h"
+#include "puppetri/motion/sitting.h"
 
 namespace puppetri::motion {
 namespace {
@@ -102,9 +103,11 @@ MovementPtr make_bow(const MotionContext& context, const BowSpec& spec) {
                           .dofs = {"hips.flex", "spine.flex", "chest.flex", "neck.flex"},
                           .paths = {{Limb::kPelvis, PathSpace::kStart}},
                           .also = kAllLimbs};
+    // Who sits bends over the seat.
     return make_posed(
         context, posed,
-        std::make_shared<Bow>(spec.deep_rad, scale_of(context.figure), spec.duration_s));
+        std::make_shared<Bow>(spec.deep_rad, sits(context) ? 0 : scale_of(context.figure),
+                              spec.duration_s));
 }
 
 double wave_duration_s(int times) {

@@ -13,6 +13,7 @@
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/posed.h"
+#include "puppetri/motion/sitting.h"
 
 namespace puppetri::motion {
 namespace {
@@ -163,6 +164,8 @@ double reach_to(const figure::Figure& figure, const Controls& c, Vec3 ball_world
 PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
     constexpr double kEasy = 0.93, kFarthest = 0.985;
     const figure::Figure& figure = context.figure;
+    const double scale =
+        sits(context) ? 0 : figure.height_m / 1.75;  // who sits bends over the seat
     const double own_s = context.duration.ticks > 0 ? context.duration.seconds() : spec.duration_s;
     const double grasp_s = kGrasp * own_s;
     const PosedSpec posed{
@@ -175,8 +178,7 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
     Controls low = context.now;
     double reach = 2;
     for (double part = 0; part < 1.05 && reach > kEasy; part += 0.1) {
-        body = make_posed(context, posed,
-                          std::make_shared<Stoop>(part, figure.height_m / 1.75, grasp_s, own_s));
+        body = make_posed(context, posed, std::make_shared<Stoop>(part, scale, grasp_s, own_s));
         body->sample(grasp_s, low);
         reach = reach_to(figure, low, spec.ball_world, spec.radius_m);
     }

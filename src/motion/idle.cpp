@@ -8,6 +8,7 @@
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/inertialize.h"
+#include "puppetri/motion/sitting.h"
 #include "times.h"
 
 namespace puppetri::motion {
@@ -83,18 +84,25 @@ namespace {
 class Idle final : public Movement {
  public:
     Idle(const MotionContext& context, const IdleSpec& spec)
-        : figure_(context.figure), living_(context.figure, context.seed, spec.liveliness) {
+        : figure_(context.figure),
+          living_(context.figure, context.seed, spec.liveliness),
+          seated_(!spec.gets_up && sits(context)) {
         limbs = spec.limbs;
         duration =
             context.duration.ticks >= 0 ? context.duration : whole_milliseconds(spec.duration_s);
         plan_feet(context);
         for (const Side side : {Side::kLeft, Side::kRight}) {
-            home_.arms[index_of(side)] = hanging_arm(figure_, side);
+            home_.arms[index_of(side)] =
+                seated_ ? arm_on_thigh(figure_, side) : hanging_arm(figure_, side);
+        }
+        if (seated_) {
+            home_.pelvis = {context.now.pelvis.position_world,
+                            about_y(heading_of(context.now.pelvis.rotation_world))};
         }
         // The own motion at the start and a moment later, against the state that was found.
         Controls own = home_, later = home_;
-        living_.add(0, 1, own);
-        living_.add(InertialFigure::kMoment_s, 1, later);
+        live(0, own);
+        live(InertialFigure::kMoment_s, later);
         constexpr double kSettle_s = 0.7;
         // Who is cut in full stride stops before the legs are too short.
         const double speed = length(context.rate.pelvis_velocity_world);
@@ -109,7 +117,7 @@ class Idle final : public Movement {
 
     void sample(double t_s, Controls& out) const override {
         Controls c = home_;
-        living_.add(t_s, 1, c);
+        live(t_s, c);
         c.pelvis.position_world = c.pelvis.position_world + pelvis_.at(t_s);
         for (int i = 0; i < 2; ++i) {
             c.legs[i] = feet_[i].at(t_s);
@@ -120,6 +128,10 @@ class Idle final : public Movement {
     }
 
  private:
+    void live(double t_s, Controls& c) const {
+        seated_ ? living_.add_seated(t_s, c) : living_.add(t_s, 1, c);
+    }
+
     void plan_feet(const MotionContext& context) {
         for (const Side side : {Side::kLeft, Side::kRight}) {
             Landing landing = put_down(figure_, context, side);
@@ -138,6 +150,7 @@ class Idle final : public Movement {
 
     const figure::Figure& figure_;
     Living living_;
+    bool seated_;
     Controls home_;
     std::array<FootPath, 2> feet_;
     InertialOffset3 pelvis_;

@@ -48,6 +48,18 @@ void Living::add(double t_s, double part, Controls& c) const {
     }
 }
 
+void Living::add_seated(double t_s, Controls& c) const {
+    const double k = liveliness_;
+    const double weight = k * wave(0, 7.5, t_s), lean = k * wave(2, 5.1, t_s),
+                 glance = k * wave(4, 6.3, t_s);
+    c.body.pelvis_from_chest = about_z(radians(0.7) * weight) * about_y(radians(1.2) * glance) *
+                               about_x(radians(0.8) * lean) * c.body.pelvis_from_chest;
+    c.body.chest_from_head = about_y(radians(7) * glance) *
+                             about_x(radians(2.5) * k * wave(6, 4.7, t_s)) *
+                             about_z(radians(-0.4) * weight) * c.body.chest_from_head;
+    c.body.breath += k * (0.5 - 0.5 * puppetri::cos(2 * kPi * t_s / 3.9 + phase_[8]));
+}
+
 double smooth_rise(double t_s, double over_s) {
     const double r = clamp(t_s / over_s, 0, 1);
     return r * r * r * (10 - r * (15 - 6 * r));

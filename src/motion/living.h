@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What makes a standing figure live: breath, weight that wanders from leg to leg, a glance now and
-// then. Slow sums of sines with phases from a seed; added to a standing pose, it never moves a
-// foot.
+// What makes a standing or a seated figure live: breath, weight that wanders from leg to leg, a
+// glance now and then. Slow sums of sines with phases from a seed; added to a standing pose, it
+// never moves a foot.
 #pragma once
 #include "puppetri/figure/mannequin.h"
 #include "puppetri/motion/controls.h"
@@ -16,6 +16,8 @@ class Living {
     // Changes pelvis, body and hands of a standing figure by what it does at t_s, scaled by `part`
     // in [0, 1]; a movement that fades it in lets `part` grow smoothly.
     void add(double t_s, double part, Controls& controls) const;
+    // The same of a seated one, whose pelvis and hands rest.
+    void add_seated(double t_s, Controls& controls) const;
 
  private:
     double wave(int channel, double period_s, double t_s) const;

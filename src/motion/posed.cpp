@@ -76,7 +76,8 @@ class Posed final : public Movement {
         if (!spec.stretches) {
             pace_ = std::fmax(pace_, 1);
         }
-        base_ = make_idle(context, {.limbs = limbs, .duration_s = spec.duration_s});
+        base_ = make_idle(context,
+                          {.limbs = limbs, .duration_s = spec.duration_s, .gets_up = spec.gets_up});
         find_drives();
         const Transform pelvis{about_y(heading_of(start_.pelvis.rotation_world)),
                                start_.pelvis.position_world};

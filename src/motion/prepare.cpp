@@ -13,6 +13,7 @@
 #include "puppetri/motion/gait.h"
 #include "puppetri/motion/gaze.h"
 #include "puppetri/motion/gestures.h"
+#include "puppetri/motion/go.h"
 #include "puppetri/motion/grip.h"
 #include "puppetri/motion/handling.h"
 #include "puppetri/motion/hug.h"
@@ -57,11 +58,13 @@ class Preparer {
 
  private:
     void tell_long_stroke(double stroke_m);
+    void tell_seated();
 
     // Whole movements.
     void stand();
     void step(StepKind kind, double stroke_m);
     void walk();
+    void go();
     void turn_to(double heading_rad);
     void face();
     double in_time(double heading_rad) const;
@@ -187,6 +190,7 @@ void Preparer::tell_long_stroke(double stroke_m) {
 }
 
 void Preparer::step(StepKind kind, double stroke_m) {
+    tell_seated();
     tell_long_stroke(stroke_m);
     const LimbSet limbs = main_limbs();
     finish(make_step(context_, {.transfer = arguments_.side("side"),
@@ -196,52 +200,66 @@ void Preparer::step(StepKind kind, double stroke_m) {
                                 .limbs = limbs}));
 }
 
-// Moves the context to the end of a movement that starts from it: the start of the next.
-void advance_over(MotionContext& context, const Movement& movement) {
-    constexpr double kMoment_s = 1e-4;
-    const double end_s = movement.duration.seconds();
-    Controls earlier = context.now;
-    movement.sample(std::fmax(end_s - kMoment_s, 0), earlier);
-    movement.sample(end_s, context.now);
-    context.rate = rate_between(earlier, context.now, kMoment_s);
-    context.at = context.at + movement.duration;
-}
-
 void Preparer::walk() {
+    tell_seated();
     tell_long_stroke(arguments_.number("stroke"));
     const int steps = static_cast<int>(walked_steps(arguments_.number("steps")));
     const LimbSet limbs = main_limbs();
-    StepSpec spec{.transfer = arguments_.side("side"),
-                  .stroke_m = arguments_.number("stroke"),
-                  .duty_factor = arguments_.number("duty"),
-                  .limbs = limbs};
-    if (context_.duration.ticks > 0) {
-        spec.duration_s = context_.duration.seconds() / steps;
+    const StepSpec spec{.transfer = arguments_.side("side"),
+                        .stroke_m = arguments_.number("stroke"),
+                        .duty_factor = arguments_.number("duty"),
+                        .limbs = limbs};
+    finish(make_walk(context_, spec, steps));
+}
+
+// To a place; before what stands or lies there by an arm's length; before a seat so far that
+// sitting down brings the hips onto it.
+void Preparer::go() {
+    tell_seated();
+    const ArgumentValue* to = arguments_.find("to");
+    PUP_REQUIRE(to != nullptr);
+    const LimbSet limbs = main_limbs();
+    GoSpec spec{.to_world = place_of(*to), .limbs = limbs};
+    const Vec3 way = spec.to_world - context_.now.pelvis.position_world;
+    if (length(Vec3{way.x, 0, way.z}) > kFarthestWay_m) {
+        note("far-way", "the place is more than 200 m away: it goes that far",
+             "let it begin nearer");
     }
-    // k steps are k + 1 movements: a half one, k - 1 whole ones, a half one.
-    std::vector<MovementPtr> parts;
-    MotionContext now = context_;
-    SimTime gone;
-    for (int i = 0; i <= steps; ++i) {
-        spec.kind = i == 0       ? StepKind::kFirstHalf
-                    : i == steps ? StepKind::kLastHalf
-                                 : StepKind::kWhole;
-        now.duration = {-1};
-        if (context_.duration.ticks > 0) {
-            const double share = i == steps ? 1.0 : (i + 0.5) / steps;
-            const SimTime end{
-                static_cast<std::int64_t>(share * static_cast<double>(context_.duration.ticks))};
-            now.duration = (i == steps ? context_.duration : end) - gone;
-            gone = gone + now.duration;
+    if (const ArgumentValue* facing = arguments_.find("facing")) {
+        if (const double* heading = std::get_if<double>(facing)) {
+            spec.heading_rad = *heading;
+        } else if (const auto* set = std::get_if<SetIndex>(facing)) {
+            spec.heading_rad = around_.sets[set->value].direction_rad;
+        } else {
+            const Vec3 there = place_of(*facing) - spec.to_world;
+            spec.heading_rad = heading_of(there);
         }
-        parts.push_back(make_step(now, spec));
-        advance_over(now, *parts.back());
-        spec.transfer = other(spec.transfer);
     }
-    finish(in_turn(std::move(parts)));
+    if (arguments_.find("seat") != nullptr) {
+        const double heading = spec.heading_rad.value_or(
+            heading_of(context_.now.pelvis.position_world - spec.to_world));
+        spec.heading_rad = heading;
+        const Vec3 hips = seated_hips(context_.figure, arguments_.number("seat"));
+        spec.to_world = spec.to_world - rotate(about_y(heading), {0, 0, hips.z});
+    } else if (arguments_.find("before") != nullptr) {
+        spec.before_m = arguments_.number("before");
+    } else if (std::holds_alternative<ActorIndex>(*to)) {
+        spec.before_m = 0.52 * context_.figure.height_m;
+    } else if (std::holds_alternative<PropIndex>(*to)) {
+        spec.before_m = 0.23 * context_.figure.height_m;
+    }
+    finish(make_go(context_, spec));
+}
+
+// Who sits and shall do what needs both feet under the body.
+void Preparer::tell_seated() {
+    if (sits(context_)) {
+        note("seated", "it sits, and gets up faster than anybody could", "let it stand_up() first");
+    }
 }
 
 void Preparer::turn_to(double heading_rad) {
+    tell_seated();
     const LimbSet limbs = main_limbs();
     const double by = turn_between(heading_of(context_.now.pelvis.rotation_world), heading_rad);
     finish(make_turn(context_, {.heading_rad = heading_rad,
@@ -278,6 +296,7 @@ void Preparer::face() {
 }
 
 void Preparer::ready() {
+    tell_seated();
     const PropIndex ball = result_.prop = arguments_.prop("ball");
     const double heading = in_time(heading_to(context_.now, place_of(*arguments_.find("from"))));
     const double by = turn_between(heading_of(context_.now.pelvis.rotation_world), heading);
@@ -297,6 +316,7 @@ void Preparer::ready() {
 }
 
 void Preparer::throw_ball() {
+    tell_seated();
     const PropIndex ball = result_.prop = arguments_.prop("ball");
     const ArgumentValue* to = arguments_.find("to");
     PUP_REQUIRE(to != nullptr);
@@ -571,6 +591,8 @@ Prepared Preparer::run() {
         step(half_kind(arguments_.side("side")), 2 * arguments_.number("stroke"));
     } else if (name == "walk") {
         walk();
+    } else if (name == "go") {
+        go();
     } else if (name == "face") {
         face();
     } else if (name == "turn") {
@@ -602,6 +624,7 @@ Prepared Preparer::run() {
     } else if (name == "stand_up") {
         whole(make_stand_up(context_, {}));
     } else if (name == "jump") {
+        tell_seated();
         whole(make_jump(context_, {.height_m = arguments_.number("height")}));
     } else if (name == "wave") {
         whole(make_wave(context_, {.side = arguments_.side("side"),

@@ -3,8 +3,10 @@
 
 #include "living.h"
 #include "puppetri/math/rotation.h"
+#include "puppetri/motion/controls_from_pose.h"
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/posed.h"
+#include "puppetri/motion/solve_controls.h"
 
 namespace puppetri::motion {
 namespace {
@@ -84,6 +86,39 @@ Vec3 seated_hips(const figure::Figure& figure, double seat_height_m) {
     return {0, y, -0.95 * back + 0.06 * leg.shank_m};
 }
 
+bool sits(const MotionContext& context) {
+    constexpr double kLow = 0.8, kBehind = 0.15, kStill_m_s = 0.1;
+    const figure::Figure& figure = context.figure;
+    if (!figure.humanoid() || length(context.rate.pelvis_velocity_world) > kStill_m_s) {
+        return false;
+    }
+    const Ground ground = ground_of(context);
+    const Vec3 hips = ground.start_from_pelvis.translation;
+    return hips.y < kLow * ground.standing.y && hips.z - ground.feet.z < -kBehind * figure.height_m;
+}
+
+namespace {
+
+// Where the wrist of a hand on its thigh is, before the chest.
+Vec3 wrist_on_thigh(const figure::Figure& figure, Side side) {
+    const double s = side == Side::kLeft ? 1 : -1;
+    return Vec3{0.15 * s, -0.315, 0.235} * (figure.height_m / 1.75);
+}
+
+}  // namespace
+
+ArmControl arm_on_thigh(const figure::Figure& figure, Side side) {
+    Controls c = standing(figure, {}, 0);
+    const auto i = static_cast<std::size_t>(index_of(side));
+    c.arms[i].chest_from_hand.translation = wrist_on_thigh(figure, side);
+    // In line with the forearm.
+    figure::Pose pose;
+    solve_controls(figure, c, pose);
+    pose.parent_from_joint[figure.arms[i].hand.value].rotation = {};
+    controls_from_pose(figure, pose, limb_set(arm_of(side)), c);
+    return c.arms[i];
+}
+
 MovementPtr make_sit(const MotionContext& context, const SitSpec& spec) {
     const Ground ground = ground_of(context);
     auto going = std::make_shared<Going>();
@@ -93,11 +128,9 @@ MovementPtr make_sit(const MotionContext& context, const SitSpec& spec) {
     const double way = length(going->to.translation - going->from.translation);
     going->lean_rad = kLean_rad * clamp(way / (0.35 * context.figure.height_m), 0, 1);
     going->hands = true;
-    const double k = context.figure.height_m / 1.75;
     for (const Side side : {Side::kLeft, Side::kRight}) {
-        const double s = side == Side::kLeft ? 1 : -1;
         going->on_thighs[static_cast<std::size_t>(index_of(side))] =
-            Vec3{0.15 * s, -0.315, 0.235} * k;
+            wrist_on_thigh(context.figure, side);
     }
     const PosedSpec posed{
         .name = "sit",
@@ -125,7 +158,8 @@ MovementPtr make_stand_up(const MotionContext& context, const StandUpSpec& spec)
                           .travels = true,
                           .settle_s = 0.7,
                           .stretches = false,
-                          .also = kAllLimbs};
+                          .also = kAllLimbs,
+                          .gets_up = true};
     return make_posed(context, posed, std::move(going));
 }
 

@@ -36,6 +36,7 @@ class Turn final : public Movement {
     Turn(const MotionContext& context, const TurnSpec& spec)
         : figure_(context.figure), living_(context.figure, context.seed, 1) {
         limbs = spec.limbs;
+        no_step_rad_ = spec.no_step_rad;
         const PelvisControl home = pelvis_over_feet(figure_, context.now);
         from_ = heading_of(home.rotation_world);
         angle_ = turn_between(from_, spec.heading_rad);
@@ -89,7 +90,7 @@ class Turn final : public Movement {
             ready_s = std::fmax(ready_s, landing[i].flat_s);
         }
         centre_[0] = (ankle[0] + ankle[1]) * 0.5;
-        const bool moves = std::fabs(angle_) >= kNoStep && ready_s < 0.5 * T_;
+        const bool moves = std::fabs(angle_) >= no_step_rad_ && ready_s < 0.5 * T_;
         // One pair of steps is quicker than two and goes up to 125 degrees; more pairs where there
         // is time for them.
         const int wanted = 1 + static_cast<int>(std::fabs(angle_) / kPairMost);
@@ -272,7 +273,7 @@ class Turn final : public Movement {
 
     const figure::Figure& figure_;
     Living living_;
-    double from_ = 0, to_ = 0, angle_ = 0, T_ = 0;
+    double from_ = 0, to_ = 0, angle_ = 0, T_ = 0, no_step_rad_ = 0;
     Vec3 centre_[2];
     Vec3 rest_;  // what the pelvis is short of its place at the end
     std::vector<Swing> swings_;

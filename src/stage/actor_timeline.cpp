@@ -62,7 +62,8 @@ void ActorTimeline::sample(SimTime at, motion::Controls& out, bool before) const
     }
 }
 
-void ActorTimeline::overlay(SimTime at, figure::Pose& pose, bool before) const {
+void ActorTimeline::overlay(const figure::Figure& figure, SimTime at, figure::Pose& pose,
+                            bool before) const {
     if (!has_overlays_) {
         return;
     }
@@ -90,7 +91,10 @@ void ActorTimeline::overlay(SimTime at, figure::Pose& pose, bool before) const {
         if (charge.join != nullptr) {
             const double since_s = (at - charge.from).seconds();
             for (const auto& [joint, offset] : charge.join->joints) {
-                offset.apply(since_s, pose.parent_from_joint[joint.value]);
+                Transform& turned = pose.parent_from_joint[joint.value];
+                offset.apply(since_s, turned);
+                turned.rotation =
+                    figure::clamp_to_limit(figure.limits[joint.value], turned.rotation);
             }
         }
     }

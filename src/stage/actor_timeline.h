@@ -41,8 +41,10 @@ class ActorTimeline {
     // allocation.
     void sample(SimTime at, motion::Controls& out, bool before = false) const;
 
-    // Writes what joints do beyond the controls into the pose that these were solved into.
-    void overlay(SimTime at, figure::Pose& pose, bool before = false) const;
+    // Writes what joints do beyond the controls into the pose that these were solved into; all
+    // within the limits of the figure, which is the actor's.
+    void overlay(const figure::Figure& figure, SimTime at, figure::Pose& pose,
+                 bool before = false) const;
     // Whether any movement ever poses joints: otherwise overlay changes nothing.
     bool has_overlays() const { return has_overlays_; }
 

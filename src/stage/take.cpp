@@ -33,7 +33,7 @@ void Take::pose(ActorIndex actor, SimTime at, figure::Pose& out, bool before) co
             normalized(from_rotation_vector(a.gaze_track.at(at)) * controls.body.chest_from_head);
     }
     motion::solve_controls(*a.figure, controls, out);
-    a.timeline.overlay(at, out, before);
+    a.timeline.overlay(*a.figure, at, out, before);
 }
 
 Transform Take::between_hands(ActorIndex actor, double radius_m, SimTime at, bool before) const {

@@ -130,7 +130,7 @@ Swings swings_of(const BoundCall& call, bool calm) {
         return {call.subject.limb == Limb::kLeftLeg, call.subject.limb == Limb::kRightLeg, false};
     }
     // One foot after the other.
-    if (is_one_of(m, {"walk", "turn", "face", "ready", "throw", "catch"})) {
+    if (is_one_of(m, {"go", "walk", "turn", "face", "ready", "throw", "catch"})) {
         return {true, true, false};
     }
     if (call.own != nullptr) {
@@ -140,9 +140,10 @@ Swings swings_of(const BoundCall& call, bool calm) {
         const bool right = pelvis || limbs.has(Limb::kRightLeg);
         return {left, right, left && right};
     }
-    if (is_one_of(m, {"support", "idle", "stand", "carry", "hold", "reach", "swing",
-                      "swing_forward", "swing_backward", "bow", "eat", "hand_over", "hug",
-                      "pick_up", "sit", "stand_up", "wave"})) {
+    if (is_one_of(
+            m, {"support",   "idle", "stand",   "carry",         "hold",           "reach", "point",
+                "aim",       "look", "swing",   "swing_forward", "swing_backward", "bow",   "eat",
+                "hand_over", "hug",  "pick_up", "sit",           "stand_up",       "wave"})) {
         return {};
     }
     return anything;

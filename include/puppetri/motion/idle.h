@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Standing: breathing, weight that shifts from leg to leg, a gaze that wanders. Never a statue, and
-// never a moving foot.
+// never a moving foot. Who sits goes on sitting.
 #pragma once
 #include "puppetri/motion/context.h"
 #include "puppetri/motion/movement.h"
@@ -21,9 +21,11 @@ struct IdleSpec {
     LimbSet limbs = kAllLimbs;
     double duration_s = 2;  // what `takes auto` gets
     double liveliness = 1;  // scales breath, weight shift and gaze; 0 is a statue
+    bool gets_up = false;   // from a seat; otherwise who sits goes on sitting
 };
 
-// Stands where the feet are (a creature: stays where it is). Legs in the air are put down first. A
+// Stands where the feet are (who sits stays seated there, hands on the thighs; a creature stays
+// where it is). Legs in the air are put down first. A
 // prescribed duration in the context replaces the spec's. Deterministic in the context's seed.
 MovementPtr make_idle(const MotionContext& context, const IdleSpec& spec);
 

@@ -59,7 +59,8 @@ struct PosedSpec {
     double reached_s = 0;
     // A place that gives it more time than its duration: play slower, or rest at the end.
     bool stretches = true;
-    LimbSet also = {};  // what else it drives: limbs that stand alive, unmoved by the source
+    LimbSet also = {};     // what else it drives: limbs that stand alive, unmoved by the source
+    bool gets_up = false;  // what the source does not pose stands, also of one who sits
 };
 
 // Numbers of one instant, in the order of the spec. Joints' rotations are parent_from_joint of the

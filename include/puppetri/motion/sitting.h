@@ -22,6 +22,13 @@ MovementPtr make_sit(const MotionContext& context, const SitSpec& spec);
 // floor, heading with the pelvis.
 Vec3 seated_hips(const figure::Figure& figure, double seat_height_m);
 
+// Whether these controls are those of one who rests on a seat: the hips low, behind the feet, and
+// still.
+bool sits(const MotionContext& context);
+
+// The arm of a seated figure: the hand on its thigh.
+ArmControl arm_on_thigh(const figure::Figure& figure, Side side);
+
 struct StandUpSpec {
     double duration_s = 1.5;
 };
