@@ -52,7 +52,8 @@ Arc Builder::arc(std::uint32_t node, ArcKind arc_kind) {
                 out.kind = ArcKind::kTakeNow;
                 break;
             case Kind::kAll:
-                out.kind = ArcKind::kTakeAll;
+                out.kind =
+                    nodes_[node].begin + 1 < first_child ? ArcKind::kTakeAllNow : ArcKind::kTakeAll;
                 break;
             default:
                 out.kind = ArcKind::kUnlessReady;
@@ -72,7 +73,7 @@ Arc Builder::arc(std::uint32_t node, ArcKind arc_kind) {
         }
     }
     out.span = span(node);
-    if (out.kind == ArcKind::kTakeAll && out.weight) {
+    if ((out.kind == ArcKind::kTakeAll || out.kind == ArcKind::kTakeAllNow) && out.weight) {
         report_.error(out.weight.span, "misplaced-weight", element,
                       "'all' takes however many there are",
                       "leave the weight out, or leave 'all' out");
@@ -221,6 +222,7 @@ void Builder::transition_clause(std::uint32_t node, Transition& out) {
             arcs(ArcKind::kUnless);
             break;
         case Kind::kOn:
+            out.next_event = nodes_[node].begin + 1 < nodes_[node + 1].begin;
             paths(out.events);
             break;
         case Kind::kAfter:

@@ -239,7 +239,8 @@ struct binding : node<N::kBinding, path, tok<K::kEqual>, inner> {};
 struct bindings : seq<tok<K::kOpenParen>, list<binding, K::kComma>, tok<K::kCloseParen>> {};
 struct weight : node<N::kWeight, sor<bare_number, parenthesis, path>> {};
 struct arc_term : seq<opt<weight, tok<K::kTimes>>, path, opt<bindings>> {};
-struct arc : node<N::kArc, sor<seq<tok<K::kNow>, arc_term>, seq<tok<K::kAll>, arc_term>, arc_term>> {};
+struct arc : node<N::kArc, sor<seq<tok<K::kNow>, arc_term>, seq<tok<K::kAll>, tok<K::kNow>, arc_term>,
+                               seq<tok<K::kAll>, arc_term>, arc_term>> {};
 struct test : node<N::kArc, arc_term> {};
 struct unless_test : node<N::kArc, sor<seq<tok<K::kReady>, arc_term>, arc_term>> {};
 
@@ -270,7 +271,7 @@ struct transition_clause : sor<
     clause<tok<K::kWith>, peg::list<test, sor<tok<K::kAnd>, tok<K::kPlus>>>>,
     clause<tok<K::kWhile>, peg::list<test, sor<tok<K::kAnd>, tok<K::kPlus>>>>,
     clause<tok<K::kUnless>, list<unless_test, K::kOr>>,
-    clause<tok<K::kOn>, list<path, K::kOr>>,
+    clause<tok<K::kOn>, sor<seq<tok<K::kNext>, list<path, K::kOr>>, list<path, K::kOr>>>,
     clause<tok<K::kAfter>, expr>,
     clause<tok<K::kMemory>, sor<tok<K::kEnabling>, tok<K::kAge>, tok<K::kResample>>>,
     clause<tok<K::kServers>, sor<tok<K::kSingle>, tok<K::kInfinite>, expr>>,

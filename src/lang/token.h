@@ -108,6 +108,7 @@ enum class Kind : std::uint8_t {
     kNet,
     kNever,
     kNewest,
+    kNext,
     kNo,
     kNobodyFreezes,
     kNot,
@@ -165,7 +166,7 @@ enum class Kind : std::uint8_t {
 };
 
 inline constexpr std::uint8_t kFirstKeyword = 128;
-inline constexpr std::array<std::string_view, 111> kKeywords = {"after",
+inline constexpr std::array<std::string_view, 112> kKeywords = {"after",
                                                                 "age",
                                                                 "all",
                                                                 "alternate",
@@ -222,6 +223,7 @@ inline constexpr std::array<std::string_view, 111> kKeywords = {"after",
                                                                 "net",
                                                                 "never",
                                                                 "newest",
+                                                                "next",
                                                                 "no",
                                                                 "nobody_freezes",
                                                                 "not",

@@ -340,6 +340,7 @@ class Compiler {
             special.events.push_back(e.value);
             listeners_.push_back({e.value, t});
         }
+        special.next_event = draft.next_event;
         for (const EventIndex e : draft.raises) {
             special.raises.push_back(e.value);
         }
@@ -702,6 +703,9 @@ class Compiler {
         for (const Special& s : out_.specials) {
             h.add_u64(s.transition).add_u64(s.arcs.size()).add_u64(s.outputs.size());
             h.add_u64(s.guard.value).add_u64(s.odds.value).add_f64(s.constant_odds);
+            if (s.next_event) {
+                h.add_text("next");
+            }
         }
         h.add_u64(out_.code.hash());
         out_.hash = h.value();

@@ -86,6 +86,20 @@ void Engine::offer_first() {
         touch(t);
     }
     look_again(false);
+    // Who hears only the next occurrence must have waited for it when it came.
+    for (const std::uint32_t t : tables_->event_listeners.row(o.event)) {
+        const std::uint32_t number = tables_->transition[t].special;
+        if (marked_[number] == 0) {
+            miss_offer(tables_->specials[number]);
+        }
+    }
+}
+
+// From now on this occurrence is none for a transition that hears only the next one.
+void Engine::miss_offer(const Special& s) {
+    if (s.next_event && offered_to(s)) {
+        state_.offer_users.push_back(s.transition);
+    }
 }
 
 // Free runs: the instant has settled; does the outside do something before time passes? True: it

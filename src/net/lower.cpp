@@ -261,6 +261,7 @@ class Lowering {
         append(keep.assignments, other.assignments);
         append(keep.raises, other.raises);
         append(keep.events, other.events);
+        keep.next_event = keep.next_event || other.next_event;
         if (other.guard) {
             if (keep.guard) {
                 Result<Expr, ExprError> both =

@@ -72,6 +72,7 @@ void Engine::gate_closed(std::uint32_t t) {
     leave(t);
     if (marked_[number] != 0) {
         marked_[number] = 0;
+        miss_offer(tables_->specials[number]);
         if (tables_->specials[number].delay != kNoIndex) {
             set_clocks(tables_->specials[number].delay, 0);
         }

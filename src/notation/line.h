@@ -34,7 +34,9 @@ class Teller {
 
 class Line {
  public:
-    Line(const lang::Property& property, Teller& teller) : property_(property), teller_(teller) {}
+    // `first`: the value to begin with, where a label stands before.
+    Line(const lang::Property& property, Teller& teller, std::size_t first = 0)
+        : property_(property), teller_(teller), at_(first) {}
 
     // What the line begins with.
     const lang::Path& name() const { return property_.name; }
@@ -59,7 +61,7 @@ class Line {
 
     const lang::Property& property_;
     Teller& teller_;
-    std::size_t at_ = 0;
+    std::size_t at_;
 };
 
 }  // namespace puppetri::notation

@@ -12,6 +12,8 @@ namespace {
 // In alphabetical order.
 constexpr std::array kNotations = {
     Notation{"automaton", "a finite automaton whose states last", lower_automaton},
+    Notation{"unit", "event units: sequence, parallel, choice, repeat, until, interrupt",
+             lower_unit},
 };
 
 }  // namespace

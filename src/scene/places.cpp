@@ -153,6 +153,10 @@ void Elaboration::complete_place(std::size_t i) {
 void Elaboration::complete_tokens(std::size_t i) {
     const PlaceElement& place = places_[i];
     net::PlaceDraft& out = draft().places[i];
+    if (place.node->role == lang::Role::kStart &&
+        instances_[place.scope.instance].refines.valid()) {
+        return;  // a place that runs the net marks its start itself
+    }
     for (const lang::InitialTokens& group : place.node->tokens) {
         const auto count = group.count
                                ? constant_integer(group.count, place.scope, "the number of tokens")

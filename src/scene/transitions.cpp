@@ -14,6 +14,8 @@ net::ArcKind kind_of(lang::ArcKind kind) {
             return net::ArcKind::kTakeNow;
         case lang::ArcKind::kTakeAll:
             return net::ArcKind::kTakeAll;
+        case lang::ArcKind::kTakeAllNow:
+            return net::ArcKind::kTakeAllNow;
         case lang::ArcKind::kWith:
             return net::ArcKind::kRead;
         case lang::ArcKind::kWhile:
@@ -195,6 +197,7 @@ void Elaboration::complete_transition(std::size_t index) {
             wrong(path.span, "an event", term);
         }
     }
+    out.next_event = node.next_event;
     for (const lang::Path& path : node.raises) {
         const Term term = resolve(path, outer);
         if (const auto* e = std::get_if<EventTerm>(&term)) {

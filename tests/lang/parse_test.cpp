@@ -123,6 +123,19 @@ TEST_CASE("arcs have weights, patterns and ways of taking [unit]") {
     CHECK(to_text(t.outputs[1].place) == "b.c");
 }
 
+TEST_CASE("all now, and on next; events may have these names [unit]") {
+    const Transition t = transition("t: all now P + all now -> on next A or B");
+    REQUIRE(t.inputs.size() == 2);
+    CHECK(t.inputs[0].kind == ArcKind::kTakeAllNow);
+    CHECK(t.inputs[1].kind == ArcKind::kTakeAll);
+    CHECK(to_text(t.inputs[1].place) == "now");
+    CHECK(t.next_event);
+    CHECK(t.events.size() == 2);
+    const Transition named = transition("t: P -> on next or next");
+    CHECK_FALSE(named.next_event);
+    CHECK(named.events.size() == 2);
+}
+
 TEST_CASE("a transition may take from nowhere and give nothing [unit]") {
     CHECK(transition("t: -> P after 2 s").inputs.empty());
     const Transition t = transition("t: P -> when x > 2");

@@ -59,6 +59,43 @@ TEST_CASE("what a firing with the occurrence makes possible may still use it [un
     CHECK(run.log.text == "1:first 1:between 1:second");
 }
 
+TEST_CASE("on next: an occurrence is none for who was not waiting when it came [unit]") {
+    Maker m;
+    const EventIndex e = m.event("e");
+    m.at(1, e);
+    m.at(1, e);
+    m.at(3, e);
+    m.place("a", 1);
+    for (const auto& [name, from, to] :
+         {std::array{"first", "a", "b"}, std::array{"second", "b", "c"},
+          std::array{"third", "c", "d"}}) {
+        TransitionDraft& t = m.t(name, {from}, {to});
+        t.events = {e};
+        t.next_event = true;
+    }
+    Run run(m.net());
+    run.until(10);
+    CHECK(run.log.text == "1:first 1:second 3:third");
+}
+
+TEST_CASE("on next: who stops waiting during an occurrence waits for another one [unit]") {
+    Maker m;
+    const EventIndex e = m.event("e");
+    m.at(1, e);
+    m.at(2, e);
+    m.place("a", 1);
+    m.place("go", 1);
+    TransitionDraft& again = m.t("again", {"a", "go"}, {"a"});
+    again.events = {e};
+    again.priority = 2;
+    TransitionDraft& t = m.t("t", {"a"}, {});
+    t.events = {e};
+    t.next_event = true;
+    Run run(m.net());
+    run.until(10);
+    CHECK(run.log.text == "1:again 2:t");
+}
+
 TEST_CASE("a consumed event is used up by the first; an unused one is lost and logged [unit]") {
     Maker m;
     const EventIndex e = m.event("e");

@@ -73,6 +73,7 @@ enum class ArcKind : std::uint8_t {
     kTake,         // k*P
     kTakeNow,      // now k*P: ready or not
     kTakeAll,      // all P
+    kTakeAllNow,   // all now P: ready or not
     kGive,         // k*P after ->
     kWith,         // with k*P: reads ready tokens
     kWhile,        // while k*P: reads tokens ready or not
@@ -103,6 +104,7 @@ struct Transition {
     Expr priority;
     Expr guard;                // when
     std::vector<Path> events;  // on A or B
+    bool next_event = false;   // on next A or B
     Expr delay;                // after: an expression, a kRange or a kCall of a distribution
     Memory memory = Memory::kDefault;
     Expr servers;                      // a number, or the kPath `infinite`

@@ -152,6 +152,8 @@ struct TransitionDraft {
     std::int64_t priority = 1;
     std::optional<Expr> odds;        // a number above 0; default 1
     std::vector<EventIndex> events;  // fires only while one of these is offered
+    bool next_event = false;  // only with an occurrence that comes while it is marked, and as long
+                              // as it stays so: not with the one that made it so
     std::vector<EventIndex> raises;  // occurrences that a firing makes
     std::optional<DelayDraft> delay;
     std::optional<DurationDraft>

@@ -209,6 +209,7 @@ class Engine final : private Code::Reader {
     void push_occurrence(Occurrence o);
     bool occurrence_pending_now() const;
     void use_offer(const Special& s);
+    void miss_offer(const Special& s);
     bool ask_outside();
     void forget_activity(std::uint32_t activity);
 

@@ -83,6 +83,7 @@ struct Special {
     bool odds_is_int = false;
     double constant_odds = 1;
     std::vector<std::uint32_t> events;
+    bool next_event = false;  // see TransitionDraft
     std::vector<std::uint32_t> raises;
     std::uint32_t delay = kNoIndex;
     std::vector<std::pair<std::uint32_t, ProgramIndex>> assignments;
