@@ -593,6 +593,11 @@ std::int64_t Engine::next_time() {
     return next;
 }
 
+void Engine::pass_to(SimTime at) {
+    PUP_REQUIRE(at.ticks >= state_.now && next_time() > at.ticks);
+    state_.now = at.ticks;
+}
+
 bool Engine::settled() {
     return !somebody_can_fire() && state_.offered == kNoIndex && !occurrence_pending_now();
 }

@@ -24,15 +24,41 @@ struct Player::Data final : net::EngineListener {
         net::EngineOptions e;
         e.seed = options.seed;
         e.host = options.host;
-        e.listener = options.sink != nullptr ? this : nullptr;
+        e.listener = options.sink != nullptr || !options.coupled.empty() ? this : nullptr;
         e.beat = options.beat.ticks;
         e.firings_per_instant = options.firings_per_instant;
         e.antithetic = options.antithetic;
         return e;
     }
-    void fired(SimTime at, net::TransitionIndex t) override { options.sink->fired(at, t); }
-    void occurs(SimTime at, net::EventIndex e) override { options.sink->occurs(at, e); }
-    void lost(SimTime at, net::EventIndex e) override { options.sink->lost(at, e); }
+    void fired(SimTime at, net::TransitionIndex t) override {
+        for (Coupled* c : options.coupled) {
+            c->fired(at, t);
+        }
+        if (options.sink != nullptr) {
+            options.sink->fired(at, t);
+        }
+    }
+    void occurs(SimTime at, net::EventIndex e) override {
+        for (Coupled* c : options.coupled) {
+            c->occurs(at, e);
+        }
+        if (options.sink != nullptr) {
+            options.sink->occurs(at, e);
+        }
+    }
+    void lost(SimTime at, net::EventIndex e) override {
+        if (options.sink != nullptr) {
+            options.sink->lost(at, e);
+        }
+    }
+
+    net::Engine::Outcome run(std::int64_t until, std::uint64_t firings);
+    net::Engine::Outcome run_coupled(std::int64_t until, std::uint64_t firings);
+    bool next_crossings(SimTime until, Coupled*& whose, Coupled::Crossings& found);
+    bool may_cross() const {
+        return std::any_of(options.coupled.begin(), options.coupled.end(),
+                           [](const Coupled* c) { return c->may_cross(); });
+    }
 
     void occur(const OutsideEvent& e) {
         engine.occur(e.event, e.at);
@@ -46,7 +72,81 @@ struct Player::Data final : net::EngineListener {
     net::RandomChooser random;
     net::Engine engine;
     std::vector<OutsideEvent> recording;
+    Diagnostic coupled_fault;
+    bool coupled_faulted = false;
 };
+
+net::Engine::Outcome Player::Data::run(std::int64_t until, std::uint64_t firings) {
+    return options.coupled.empty() ? engine.run(until, firings) : run_coupled(until, firings);
+}
+
+// The earliest crossings of all; of those at one time, the first in the list of what is coupled.
+bool Player::Data::next_crossings(SimTime until, Coupled*& whose, Coupled::Crossings& found) {
+    whose = nullptr;
+    found = {};
+    for (Coupled* c : options.coupled) {
+        Coupled::Crossings next;
+        if (!c->next(engine.state(), until, next, coupled_fault)) {
+            coupled_faulted = true;
+            return false;
+        }
+        if (!next.events.empty() && next.at <= until && next.at < found.at) {
+            whose = c;
+            found = std::move(next);
+        }
+    }
+    return true;
+}
+
+// Instant by instant: when one has settled, either the net's next instant comes, or a crossing
+// before it. Crossings enter only when time goes on to them, so that whatever the outside says for
+// that instant comes first, in a replay as well.
+net::Engine::Outcome Player::Data::run_coupled(std::int64_t until, std::uint64_t firings) {
+    using Outcome = net::Engine::Outcome;
+    constexpr std::int64_t kPatience = 3600 * kTicksPerSecond;
+    if (coupled_faulted) {
+        return Outcome::kFault;
+    }
+    for (;;) {
+        const std::int64_t now = engine.state().now;
+        Outcome outcome = engine.run(now, firings);
+        if (outcome == Outcome::kFired || outcome == Outcome::kFault) {
+            return outcome;
+        }
+        const std::int64_t next = engine.next_time();
+        const std::int64_t never = SimTime::never().ticks;
+        std::int64_t continue_to = now;
+        std::int64_t limit = std::min(until, next);
+        if (limit == never) {
+            // Nothing but crossings can come: one within the hour, or none is waited for.
+            limit = now > never - kPatience ? never : now + kPatience;
+        }
+        Coupled* whose = nullptr;
+        Coupled::Crossings found;
+        if (!next_crossings({limit}, whose, found)) {
+            return Outcome::kFault;
+        }
+        if (whose != nullptr) {
+            whose->deliver();
+            for (const net::EventIndex e : found.events) {
+                engine.occur(e, {std::max(found.at.ticks, now)});
+            }
+            continue_to = std::max(found.at.ticks, now);
+        } else if (next <= until && next != never) {
+            continue_to = next;
+        } else {
+            if (next == never && (until == never || !may_cross())) {
+                return Outcome::kDead;
+            }
+            engine.pass_to({until});
+            return Outcome::kSettled;
+        }
+        outcome = engine.run(continue_to, firings);
+        if (outcome == Outcome::kFired || outcome == Outcome::kFault) {
+            return outcome;
+        }
+    }
+}
 
 Player::Player(const net::Net& net, const Options& options)
     : data_(std::make_unique<Data>(net, options)) {}
@@ -89,17 +189,17 @@ Stop stop_of(net::Engine::Outcome outcome, const net::Engine& engine) {
 }  // namespace
 
 Stop Player::step(const Limits& limits) {
-    if (data_->engine.faulted()) {
+    if (data_->engine.faulted() || data_->coupled_faulted) {
         return Stop::kFault;
     }
     if (firings() >= limits.firings) {
         return Stop::kLimit;
     }
-    return stop_of(data_->engine.step(limits.until.ticks), data_->engine);
+    return stop_of(data_->run(limits.until.ticks, firings() + 1), data_->engine);
 }
 
 Stop Player::run(const Limits& limits) {
-    const Stop stop = stop_of(data_->engine.run(limits.until.ticks, limits.firings), data_->engine);
+    const Stop stop = stop_of(data_->run(limits.until.ticks, limits.firings), data_->engine);
     return stop == Stop::kNone ? Stop::kLimit : stop;
 }
 
@@ -134,16 +234,83 @@ bool Player::fireable(net::TransitionIndex t) const {
 }
 bool Player::in_final_marking() const { return data_->engine.in_final_marking(); }
 
-const Diagnostic& Player::fault() const { return data_->engine.fault(); }
+const Diagnostic& Player::fault() const {
+    return data_->coupled_faulted ? data_->coupled_fault : data_->engine.fault();
+}
 const Diagnostics& Player::notes() const { return data_->engine.notes(); }
 
+namespace {
+
+// Parts one after another, each with its length in eight bytes before it.
+void add_part(std::vector<std::uint8_t>& out, const std::vector<std::uint8_t>& part) {
+    for (int i = 0; i < 8; ++i) {
+        out.push_back(static_cast<std::uint8_t>(std::uint64_t{part.size()} >> (8 * i)));
+    }
+    out.insert(out.end(), part.begin(), part.end());
+}
+
+bool take_part(std::span<const std::uint8_t>& bytes, std::span<const std::uint8_t>& part) {
+    std::uint64_t size = 0;
+    for (int i = 0; i < 8 && bytes.size() >= 8; ++i) {
+        size |= std::uint64_t{bytes[static_cast<std::size_t>(i)]} << (8 * i);
+    }
+    if (bytes.size() < 8 || size > bytes.size() - 8) {
+        return false;
+    }
+    part = bytes.subspan(8, static_cast<std::size_t>(size));
+    bytes = bytes.subspan(8 + static_cast<std::size_t>(size));
+    return true;
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> Player::snapshot() const {
-    return net::write_state(data_->net, data_->engine.save());
+    std::vector<std::uint8_t> state = net::write_state(data_->net, data_->engine.save());
+    if (data_->options.coupled.empty()) {
+        return state;
+    }
+    std::vector<std::uint8_t> out;
+    add_part(out, state);
+    for (const Coupled* c : data_->options.coupled) {
+        std::vector<std::uint8_t> part;
+        c->save(part);
+        add_part(out, part);
+    }
+    return out;
 }
 
 Status Player::restore(std::span<const std::uint8_t> bytes) {
-    PUP_TRY(net::State state, net::read_state(data_->net, bytes));
+    if (data_->options.coupled.empty()) {
+        PUP_TRY(net::State state, net::read_state(data_->net, bytes));
+        data_->engine.restore(std::move(state));
+        return Ok{};
+    }
+    const auto damaged = [] {
+        return Unexpected(Diagnostics{{.code = "bad-snapshot",
+                                       .where = {},
+                                       .element = "snapshot",
+                                       .message = "these bytes are no snapshot of this net",
+                                       .remedy = "take one of the same scene and version"}});
+    };
+    std::span<const std::uint8_t> part;
+    if (!take_part(bytes, part)) {
+        return damaged();
+    }
+    PUP_TRY(net::State state, net::read_state(data_->net, part));
+    // Either all are restored or none.
+    std::vector<std::vector<std::uint8_t>> before;
+    for (std::size_t i = 0; i < data_->options.coupled.size(); ++i) {
+        before.emplace_back();
+        data_->options.coupled[i]->save(before.back());
+        if (!take_part(bytes, part) || !data_->options.coupled[i]->restore(part)) {
+            for (std::size_t k = 0; k < i; ++k) {
+                data_->options.coupled[k]->restore(before[k]);
+            }
+            return damaged();
+        }
+    }
     data_->engine.restore(std::move(state));
+    data_->coupled_faulted = false;
     return Ok{};
 }
 

@@ -181,6 +181,9 @@ struct EventDraft {
     SourceSpan where;
     bool consumed = false;  // used up by the first transition
     bool outside = true;    // may come from outside
+    // A crossing of equations or of figures: time passes in a net that has some, and provers let
+    // it occur whenever they like.
+    bool crossing = false;
     // Before it is offered: sets a sensor (a crossing), or makes the oldest unready token of an
     // open place ready.
     DatumIndex sets;

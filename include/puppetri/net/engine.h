@@ -93,6 +93,9 @@ class Engine final : private Code::Reader {
     // The next time at which something happens by itself; now if something can fire at once;
     // never() if nothing.
     std::int64_t next_time();
+    // Time passes up to an instant before which nothing happens by itself.
+    // Needs next_time() > at.
+    void pass_to(SimTime at);
     // In this instant nothing can fire any more and no occurrence is pending.
     bool settled();
     bool fireable(TransitionIndex t) const { return (hot_[t.value].candidate & 3) != 0; }

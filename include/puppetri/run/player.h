@@ -16,6 +16,7 @@
 #include "puppetri/net/chooser.h"
 #include "puppetri/net/host.h"
 #include "puppetri/net/net.h"
+#include "puppetri/run/coupled.h"
 
 namespace puppetri::run {
 
@@ -64,6 +65,9 @@ struct Options {
     SimTime beat = {kTicksPerSecond};             // of paced nets
     std::uint32_t firings_per_instant = 100'000;  // after these the run stops and names the cycle
     bool antithetic = false;                      // net::EngineOptions::antithetic
+    // What goes on continuously beside the net, in the order of this list where their crossings
+    // come at one time; outlive the player.
+    std::vector<Coupled*> coupled = {};
     bool record = false;                          // keep the outside events that were taken
 };
 
@@ -109,8 +113,8 @@ class Player {
     // Lost occurrences, rounded durations: what deserves a word, at most some hundreds.
     const Diagnostics& notes() const;
 
-    // The whole state, at any instant (also between two firings of one), in few bytes. The host's
-    // state is not in it.
+    // The whole state, at any instant (also between two firings of one), in few bytes, what is
+    // coupled included. The host's state is not in it.
     std::vector<std::uint8_t> snapshot() const;
     // Fails  when the bytes are no snapshot of this net; the player is as before then.
     Status restore(std::span<const std::uint8_t> bytes);

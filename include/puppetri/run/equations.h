@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// Differential, difference and delay-differential equations beside a net. A system is data: what
+// its variables start at, programs for their rates, what enables it, what firings reset, which
+// crossings are events. One Equations runs several systems, each on its own; it is the Coupled part
+// of a player and afterwards the record of how every variable went.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "puppetri/base/diagnostic.h"
+#include "puppetri/base/expr.h"
+#include "puppetri/math/ode.h"
+#include "puppetri/run/coupled.h"
+
+namespace puppetri::run {
+
+// What slots of the programs stand for; every value is a real number in SI units. The first three
+// are those of formulas of movements (motion/formula_movement.h), which the same compiler makes.
+enum class EquationSlot : std::uint32_t {
+    kTime,      // since the run began
+    kInput,     // not used
+    kLocal,     // number in `locals`
+    kVariable,  // number in `variables`
+    kPast,      // number in `pasts`
+    kDatum,     // number in `data`
+};
+
+enum class CrossingDirection : std::uint8_t { kFalls, kRises, kPasses };
+
+struct EquationSystem {
+    struct Variable {
+        std::string name;
+        double initial = 0;
+        ProgramIndex rate;             // none: it changes only by resets and by `next`
+        ProgramIndex next;             // what it becomes, every so often
+        std::int64_t every_ticks = 0;  // of `next`
+        ProgramIndex before;           // before the start; none: as it starts. Reads the time only
+        std::string unit;              // for messages
+        SourceSpan where;
+    };
+    // `past(x, 2 s)`: a variable as it was so long ago.
+    struct Past {
+        std::uint32_t variable = 0;
+        double ago_s = 0;  // above 0
+    };
+    struct Datum {
+        net::DatumIndex datum;
+        ValueKind kind = ValueKind::kReal;
+    };
+    struct Event {
+        net::EventIndex event;
+        ProgramIndex value;  // crosses 0
+        CrossingDirection direction = CrossingDirection::kFalls;
+        // Of a sensor: where a reset jumps over 0 is a crossing, too, and the start, if it is
+        // beyond already.
+        bool jumps = false;
+        bool plain = false;  // the value is one variable less a number
+        std::string name;
+        SourceSpan where;
+    };
+    struct Reset {
+        net::TransitionIndex transition;
+        std::uint32_t variable = 0;
+        ProgramIndex value;
+    };
+
+    std::string path;  // of the instance
+    SourceSpan where;
+    std::vector<Variable> variables;
+    std::vector<ProgramIndex> locals;  // each may read those before it
+    std::vector<Past> pasts;
+    std::vector<Datum> data;
+    std::vector<Event> events;
+    std::vector<Reset> resets;
+    // It goes on while one of these has a token, ready or not, and stands still otherwise. Empty:
+    // always.
+    std::vector<net::PlaceIndex> enabled_by;
+    std::vector<ProgramIndex> outputs;  // what figures and props follow
+    Code code;
+    OdeOptions options;
+};
+
+struct EquationsOptions {
+    bool record = true;  // keep everything for value() and output(); else as far as delays look
+    std::uint32_t crossings_per_ms = 1000;  // of one system; more is an accumulation
+};
+
+class Equations final : public Coupled {
+ public:
+    explicit Equations(std::vector<EquationSystem> systems, const EquationsOptions& options = {});
+    ~Equations() override;
+
+    void fired(SimTime at, net::TransitionIndex transition) override;
+    // Faults  "equations-blow-up": the solution ends, or has no value; "crossings-accumulate": more
+    //         than EquationsOptions::crossings_per_ms within a millisecond.
+    bool next(const net::State& state, SimTime until, Crossings& out, Diagnostic& fault) override;
+    void deliver() override;
+    bool may_cross() const override;
+    void save(std::vector<std::uint8_t>& out) const override;
+    bool restore(std::span<const std::uint8_t> bytes) override;
+
+    const std::vector<EquationSystem>& systems() const;
+    // A variable, or an output, at any time that next() has gone through; before it as the history
+    // says, after it as it was last known. Safe from several threads once the run is over.
+    double value(std::uint32_t system, std::uint32_t variable, SimTime at) const;
+    double output(std::uint32_t system, std::uint32_t output, SimTime at) const;
+
+ private:
+    class Course;
+    std::vector<EquationSystem> systems_;
+    EquationsOptions options_;
+    std::vector<std::unique_ptr<Course>> courses_;
+    std::uint32_t found_ = ~std::uint32_t{0};  // whose crossings next() gave
+};
+
+}  // namespace puppetri::run
