@@ -126,8 +126,8 @@ OdeSolver::Outcome OdeSolver::step(OdeSystem& system, double until_s, OdeStep& o
         const double h = last ? rest : next_s_;
         end_s_ = last ? until_s : t_s_ + h;
         double error = 0;
-        const bool good = explicit_one ? try_dormand_prince(system, h, error)
-                                       : try_rodas(system, h, error);
+        const bool good =
+            explicit_one ? try_dormand_prince(system, h, error) : try_rodas(system, h, error);
         if (!good || !(error <= 1)) {
             next_s_ = h * (good && error - error == 0 ? factor_of(error, options_.method) : 0.1);
             rejected_ = true;
@@ -180,8 +180,8 @@ bool OdeSolver::try_dormand_prince(OdeSystem& system, double h, double& error) {
     const auto stage = [&](std::uint32_t k, double c) {
         return finite(scratch_) && system.rates(t_s_ + c * h, scratch_, row(k)) && finite(row(k));
     };
-    const double *k1 = rate_.data(), *k2 = row(1).data(), *k3 = row(2).data(),
-                 *k4 = row(3).data(), *k5 = row(4).data(), *k6 = row(5).data();
+    const double *k1 = rate_.data(), *k2 = row(1).data(), *k3 = row(2).data(), *k4 = row(3).data(),
+                 *k5 = row(4).data(), *k6 = row(5).data();
     for (std::uint32_t i = 0; i < n_; ++i) {
         scratch_[i] = x_[i] + h * (k1[i] / 5);
     }
@@ -208,9 +208,9 @@ bool OdeSolver::try_dormand_prince(OdeSystem& system, double h, double& error) {
         return false;
     }
     for (std::uint32_t i = 0; i < n_; ++i) {
-        scratch_[i] = x_[i] + h * (9017.0 / 3168 * k1[i] - 355.0 / 33 * k2[i] +
-                                   46732.0 / 5247 * k3[i] + 49.0 / 176 * k4[i] -
-                                   5103.0 / 18656 * k5[i]);
+        scratch_[i] =
+            x_[i] + h * (9017.0 / 3168 * k1[i] - 355.0 / 33 * k2[i] + 46732.0 / 5247 * k3[i] +
+                         49.0 / 176 * k4[i] - 5103.0 / 18656 * k5[i]);
     }
     if (!stage(5, 1)) {
         return false;
@@ -226,9 +226,10 @@ bool OdeSolver::try_dormand_prince(OdeSystem& system, double h, double& error) {
         const double k7 = new_rate_[i];
         scratch_[i] = h * (71.0 / 57600 * k1[i] - 71.0 / 16695 * k3[i] + 71.0 / 1920 * k4[i] -
                            17253.0 / 339200 * k5[i] + 22.0 / 525 * k6[i] - 1.0 / 40 * k7);
-        row(7)[i] = h * (-12715105075.0 / 11282082432 * k1[i] + 87487479700.0 / 32700410799 * k3[i] -
-                         10690763975.0 / 1880347072 * k4[i] + 701980252875.0 / 199316789632 * k5[i] -
-                         1453857185.0 / 822651844 * k6[i] + 69997945.0 / 29380423 * k7);
+        row(7)[i] =
+            h * (-12715105075.0 / 11282082432 * k1[i] + 87487479700.0 / 32700410799 * k3[i] -
+                 10690763975.0 / 1880347072 * k4[i] + 701980252875.0 / 199316789632 * k5[i] -
+                 1453857185.0 / 822651844 * k6[i] + 69997945.0 / 29380423 * k7);
     }
     error = norm(scratch_);
     return true;

@@ -330,8 +330,7 @@ bool Equations::Course::start_solver(double t_s, std::span<const double> x, Diag
     if (solver_.start(*this, t_s, x)) {
         return true;
     }
-    fault = problem("equations-blow-up", t_s,
-                    "the rates have no value, with " + state_text(x),
+    fault = problem("equations-blow-up", t_s, "the rates have no value, with " + state_text(x),
                     "look at what they divide by, and what they take roots and logarithms of");
     return false;
 }
@@ -445,10 +444,10 @@ bool Equations::Course::extend(Diagnostic& fault) {
         piece.end_s = next_stop(begin_s);
     } else {
         if (solver_.step(*this, next_stop(begin_s), piece.step) != OdeSolver::Outcome::kStepped) {
-            fault = problem("equations-blow-up", begin_s,
-                            "the solution ends, with " + state_text(x),
-                            "stop it before, by an event that resets it, or look at the signs; "
-                            "equations with very fast and slow parts need `solver stiff`");
+            fault =
+                problem("equations-blow-up", begin_s, "the solution ends, with " + state_text(x),
+                        "stop it before, by an event that resets it, or look at the signs; "
+                        "equations with very fast and slow parts need `solver stiff`");
             return false;
         }
         piece.end_s = solver_.now_s();

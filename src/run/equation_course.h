@@ -78,8 +78,8 @@ class Equations::Course final : public OdeSystem {
     bool search(double until_s, Diagnostic& fault);
     bool look_at_jump(const Piece& piece, Diagnostic& fault);
     bool look_after_restart(double t_s, bool first, Diagnostic& fault);
-    bool look_between(const Piece& piece, double from, double to, std::uint32_t event,
-                      double& root, bool& found);
+    bool look_between(const Piece& piece, double from, double to, std::uint32_t event, double& root,
+                      bool& found);
     double bisect(const Piece& piece, std::uint32_t event, double old_side, double new_side,
                   int side) const;
     double extremum(const Piece& piece, std::uint32_t event, double from, double to,
@@ -90,8 +90,7 @@ class Equations::Course final : public OdeSystem {
     void crosses(std::uint32_t event, int side, double root_s);
     bool wanted(const EquationSystem::Event& event, int side) const;
     std::string state_text(std::span<const double> x) const;
-    Diagnostic problem(const char* code, double t_s, std::string message,
-                       std::string remedy) const;
+    Diagnostic problem(const char* code, double t_s, std::string message, std::string remedy) const;
 
     const EquationSystem& system_;
     EquationsOptions options_;
@@ -107,9 +106,9 @@ class Equations::Course final : public OdeSystem {
     std::vector<std::vector<double>> data_rows_;
     std::vector<double> data_;  // as they were read last
     OdeSolver solver_;
-    std::vector<Kink> kinks_;   // to come, in order of time
-    std::vector<int> sides_;    // per event: below -1, above 1, not known yet 0
-    double searched_s_ = 0;     // up to here, in piece cursor_, all crossings have been found
+    std::vector<Kink> kinks_;  // to come, in order of time
+    std::vector<int> sides_;   // per event: below -1, above 1, not known yet 0
+    double searched_s_ = 0;    // up to here, in piece cursor_, all crossings have been found
     std::size_t cursor_ = 0;
 
     // What the search found, to be delivered: events, in order of their roots, and their new sides.
@@ -119,7 +118,7 @@ class Equations::Course final : public OdeSystem {
         double root_s = 0;
     };
     std::vector<Found> found_;
-    double root_s_ = 0;         // of the first
+    double root_s_ = 0;  // of the first
     SimTime at_ = SimTime::never();
 
     // Of the round of the instant that is being played: what the net does in the instant of a
@@ -131,6 +130,8 @@ class Equations::Course final : public OdeSystem {
     std::vector<net::TransitionIndex> fired_;
     std::int64_t crowded_ms_ = -1;  // the last millisecond with a crossing, and how many
     std::uint32_t crowd_ = 0;
+    // The event that was delivered last, and how often in a row within next to no time.
+    std::uint32_t last_event_ = ~std::uint32_t{0}, near_ = 0;
 
     Reader rates_reader_;
     std::vector<double> rates_locals_, ahead_;

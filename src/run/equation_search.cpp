@@ -11,8 +11,9 @@
 namespace puppetri::run {
 namespace {
 
-constexpr int kParts = 8;            // of a piece, each looked at for itself
+constexpr int kParts = 8;             // of a piece, each looked at for itself
 constexpr double kTogether_s = 1e-9;  // roots that are so near occur together
+constexpr std::uint32_t kPile = 3;    // so many of one event so near each other have no end
 
 }  // namespace
 
@@ -42,8 +43,7 @@ int Equations::Course::side_after(std::uint32_t event, const Piece& piece) const
         return first > 0 ? 1 : -1;
     }
     double value = first;
-    for (double after_s = 1e-10; after_s < 1 && begin_s + after_s < piece.end_s;
-         after_s *= 4) {
+    for (double after_s = 1e-10; after_s < 1 && begin_s + after_s < piece.end_s; after_s *= 4) {
         if (!gap(event, piece, begin_s + after_s, value)) {
             return 0;
         }
@@ -207,10 +207,10 @@ bool Equations::Course::search(double until_s, Diagnostic& fault) {
                 double root = 0;
                 bool found = false;
                 if (!look_between(piece, std::max(left, from_s), right, e, root, found)) {
-                    fault = problem("equations-blow-up", left,
-                                    "what event " + system_.events[e].name +
-                                        " watches has no value",
-                                    "look at what it divides by, and what it takes roots of");
+                    fault =
+                        problem("equations-blow-up", left,
+                                "what event " + system_.events[e].name + " watches has no value",
+                                "look at what it divides by, and what it takes roots of");
                     return false;
                 }
                 if (found) {
@@ -277,11 +277,11 @@ bool Equations::Course::next(const net::State& state, SimTime until, Diagnostic&
     }
     at_ = std::max(at_, SimTime{state.now});
     const std::int64_t ms = at_.ticks / kTicksPerMillisecond;
-    if (ms == crowded_ms_ && crowd_ > options_.crossings_per_ms && at_ <= until) {
+    const bool many = ms == crowded_ms_ && crowd_ > options_.crossings_per_ms;
+    if (at_ <= until && (many || (near_ >= kPile && root_s_ - delivered_s_ <= kTogether_s))) {
         fault = problem("crossings-accumulate", root_s_,
                         "event " + system_.events[found_.front().event].name +
-                            " has occurred " + std::to_string(crowd_) +
-                            " times within a millisecond, and its times pile up",
+                            " occurs again and again, ever sooner: its times pile up",
                         "end it in the net before: let a firing reset the variables to rest, or "
                         "take the token from what `while` names");
         return false;
@@ -316,6 +316,10 @@ void Equations::Course::deliver() {
     const std::int64_t ms = at_.ticks / kTicksPerMillisecond;
     crowd_ = ms == crowded_ms_ ? crowd_ + 1 : 1;
     crowded_ms_ = ms;
+    const bool near = !found_.empty() && found_.front().event == last_event_ &&
+                      root_s_ - delivered_s_ <= kTogether_s;
+    near_ = near ? near_ + 1 : 0;
+    last_event_ = found_.empty() ? last_event_ : found_.front().event;
     delivered_ = true;
     delivered_s_ = root_s_;
     for (const Found& f : found_) {

@@ -123,6 +123,8 @@ void Equations::Course::save(std::vector<std::uint8_t>& out) const {
     }
     w.number(static_cast<std::uint64_t>(crowded_ms_));
     w.number(crowd_);
+    w.number(last_event_);
+    w.number(near_);
 }
 
 bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
@@ -190,6 +192,8 @@ bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
     }
     made.crowded_ms_ = static_cast<std::int64_t>(r.number());
     made.crowd_ = static_cast<std::uint32_t>(r.number());
+    made.last_event_ = static_cast<std::uint32_t>(r.number());
+    made.near_ = static_cast<std::uint32_t>(r.number());
     if (!r.good || !r.at_end() || made.cursor_ > made.pieces_.size() ||
         made.begun_ == made.pieces_.empty() ||
         (made.begun_ && made.data_.size() != system_.data.size()) ||
@@ -236,6 +240,8 @@ bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
     fired_ = std::move(made.fired_);
     crowded_ms_ = made.crowded_ms_;
     crowd_ = made.crowd_;
+    last_event_ = made.last_event_;
+    near_ = made.near_;
     if (x.size() == n_ && has_rates_) {
         solver_.resume(*this, now_s, x, next_s);
     }

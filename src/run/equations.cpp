@@ -31,9 +31,9 @@ bool Equations::next(const net::State& state, SimTime until, Crossings& out, Dia
         if (!c.next(state, until, fault)) {
             return false;
         }
-        const bool sooner = c.crossing_at() < out.at ||
-                            (found_ != ~std::uint32_t{0} && c.crossing_at() == out.at &&
-                             c.root_s() < courses_[found_]->root_s());
+        const bool sooner =
+            c.crossing_at() < out.at || (found_ != ~std::uint32_t{0} && c.crossing_at() == out.at &&
+                                         c.root_s() < courses_[found_]->root_s());
         if (c.crossing_at() <= until && sooner) {
             out.at = c.crossing_at();
             found_ = i;

@@ -78,12 +78,11 @@ TEST_CASE("a decay and an oscillator are their closed forms, also between the st
 TEST_CASE("halving the step divides the error by two to the order [law]") {
     for (const OdeMethod method : kBoth) {
         const auto error = [&](int steps) {
-            System forced(1, [](double t, auto x, auto out) {
-                out[0] = -2 * x[0] * t + std::cos(3 * t);
-            });
+            System forced(
+                1, [](double t, auto x, auto out) { out[0] = -2 * x[0] * t + std::cos(3 * t); });
             // Tolerances that accept every step, and steps of one length.
-            OdeSolver solver({.method = method, .relative = 1e9, .absolute = 1e9,
-                              .most_s = 2.0 / steps});
+            OdeSolver solver(
+                {.method = method, .relative = 1e9, .absolute = 1e9, .most_s = 2.0 / steps});
             const double x0 = 1;
             solver.resume(forced, 0, {&x0, 1}, 2.0 / steps);
             OdeStep step;
@@ -96,7 +95,9 @@ TEST_CASE("halving the step divides the error by two to the order [law]") {
             for (int i = 0; i <= kParts; ++i) {
                 const double s = 2.0 * i / kParts;
                 sum += std::exp(s * s) * std::cos(3 * s) *
-                       (i == 0 || i == kParts ? 1 : i % 2 == 1 ? 4 : 2);
+                       (i == 0 || i == kParts ? 1
+                        : i % 2 == 1          ? 4
+                                              : 2);
             }
             const double truth = std::exp(-4.0) * (1 + sum * 2 / kParts / 3);
             return std::fabs(solver.x()[0] - truth);
@@ -134,11 +135,9 @@ TEST_CASE("the stiff method solves Robertson's reaction in few steps [oracle]") 
     CHECK(r.x[0] == doctest::Approx(7.158e-1).epsilon(1e-4));
     CHECK(r.x[1] == doctest::Approx(9.185e-6).epsilon(1e-3));
     CHECK(r.x[2] == doctest::Approx(2.841e-1).epsilon(1e-4));
-    const Run late = integrate(reaction, {1, 0, 0}, 1e11,
-                               {.method = OdeMethod::kRodas,
-                                .relative = 1e-6,
-                                .absolute = 1e-16,
-                                .most_s = 1e12});
+    const Run late = integrate(
+        reaction, {1, 0, 0}, 1e11,
+        {.method = OdeMethod::kRodas, .relative = 1e-6, .absolute = 1e-16, .most_s = 1e12});
     REQUIRE(late.good);
     CHECK(late.x[0] == doctest::Approx(0.2083340149701255e-7).epsilon(1e-3));
     CHECK(late.x[1] == doctest::Approx(0.8333360770334713e-13).epsilon(1e-3));

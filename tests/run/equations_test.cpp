@@ -57,7 +57,10 @@ struct Equate {
     }
     void rate(std::uint32_t v, const X& x) { s.variables[v].rate = add(x); }
     void event(net::EventIndex e, const X& x, CrossingDirection d, bool plain = true) {
-        s.events.push_back({.event = e, .value = add(x), .direction = d, .plain = plain,
+        s.events.push_back({.event = e,
+                            .value = add(x),
+                            .direction = d,
+                            .plain = plain,
                             .name = "e" + std::to_string(e.value)});
     }
     X past(std::uint32_t v, double ago_s) {
@@ -130,36 +133,38 @@ TEST_CASE("a bouncing ball hits the floor at its closed-form times, whatever the
     Ball ball(2, 0.8);
     const net::Net n = timed(ball.m);
     Equations equations({ball.q.s});
-    const Ran ran = play(n, equations, seconds(5));
+    const Ran ran = play(n, equations, seconds(5.7));
     CHECK(ran.stop == Stop::kLimit);
     // t0 = sqrt(2 h / g), then intervals 2 t0 e^k.
     const double t0 = std::sqrt(2 * 2 / 9.81);
     double t = t0, flight = 2 * t0;
     std::vector<SimTime> truth;
-    for (int k = 0; t <= 5 && truth.size() < ran.times.size() + 1; ++k) {
+    for (int k = 0; t <= 5.7 && truth.size() < ran.times.size() + 1; ++k) {
         truth.push_back(up_to_ms(t));
         flight *= 0.8;
         t += flight;
     }
-    REQUIRE(ran.times.size() > 20);
-    truth.resize(ran.times.size());
+    REQUIRE(ran.times.size() == truth.size());
+    CHECK(truth.size() > 15);
     CHECK(ran.times == truth);
     // Between impacts it is where gravity has it.
     CHECK(equations.value(0, 0, seconds(0.3)) == doctest::Approx(2 - 9.81 / 2 * 0.09));
     Equations again({ball.q.s});
-    CHECK(play(n, again, seconds(5), SimTime{kTicksPerSecond / 33}).hash == ran.hash);
+    CHECK(play(n, again, seconds(5.7), SimTime{kTicksPerSecond / 33}).hash == ran.hash);
 }
 
-
 TEST_CASE("bounces that pile up are told, with time and state [hostile]") {
-    Ball ball(2, 0.5);
-    const net::Net n = timed(ball.m);
-    Equations equations({ball.q.s});
-    const Ran ran = play(n, equations, seconds(5));
-    REQUIRE(ran.stop == Stop::kFault);
-    CHECK(ran.fault.code == "crossings-accumulate");
-    // All impacts are over at t0 (1 + 2 e / (1 - e)) = 3 t0.
-    CHECK(ran.times.back() == up_to_ms(3 * std::sqrt(4 / 9.81)));
+    for (const double e : {0.02, 0.5, 0.8, 0.95}) {
+        CAPTURE(e);
+        Ball ball(2, e);
+        const net::Net n = timed(ball.m);
+        Equations equations({ball.q.s});
+        const Ran ran = play(n, equations, seconds(50));
+        REQUIRE(ran.stop == Stop::kFault);
+        CHECK(ran.fault.code == "crossings-accumulate");
+        // All impacts are over at t0 (1 + 2 e / (1 - e)).
+        CHECK(ran.times.back() == up_to_ms(std::sqrt(4 / 9.81) * (1 + 2 * e / (1 - e))));
+    }
 }
 
 TEST_CASE("what the net does in the instant of a crossing acts at the crossing itself [unit]") {
@@ -194,8 +199,7 @@ TEST_CASE("a thermostat switches at the times of its closed form [oracle]") {
     Equate q;
     const auto temperature = q.variable("T", 20);
     q.s.data.push_back({{0}, ValueKind::kInt});
-    q.rate(temperature,
-           X(15) - var(temperature) + X(20) * slot(EquationSlot::kDatum, 0));
+    q.rate(temperature, X(15) - var(temperature) + X(20) * slot(EquationSlot::kDatum, 0));
     q.event({0}, var(temperature) - X(18), CrossingDirection::kFalls);
     q.event({1}, var(temperature) - X(22), CrossingDirection::kRises);
     const net::Net n = timed(m);
@@ -302,15 +306,15 @@ TEST_CASE("difference equations are exact: Fibonacci and the logistic map [oracl
     }
 }
 
-TEST_CASE("a delay equation at its Hopf point goes round, below it decays, above it grows [oracle]") {
+TEST_CASE(
+    "a delay equation at its Hopf point goes round, below it decays, above it grows [oracle]") {
     const auto amplitude = [](double a, double from, double to) {
         Maker m;
         m.place("p", 1);
         Equate q;
         const auto x = q.variable("x", 1);
         q.rate(x, X(-a) * q.past(x, 1));
-        q.s.variables[x].before =
-            q.add(one(ExprOp::kCos, X(3.14159265358979323846 / 2) * time()));
+        q.s.variables[x].before = q.add(one(ExprOp::kCos, X(3.14159265358979323846 / 2) * time()));
         const net::Net n = timed(m);
         Equations equations({q.s});
         CHECK(play(n, equations, seconds(to)).stop != Stop::kFault);
@@ -351,7 +355,7 @@ TEST_CASE("a delay equation is the polynomials of the method of steps [oracle]")
             factorial *= k;
             sum += (k % 2 == 1 ? -1 : 1) * std::pow(t - (k - 1), k) / factorial;
         }
-        CHECK(std::fabs(equations.value(0, x, seconds(t)) - sum) < 1e-10);
+        CHECK(std::fabs(equations.value(0, x, seconds(t)) - sum) < 1e-8);
     }
 }
 
@@ -425,8 +429,8 @@ TEST_CASE("a sensor is true when its condition is, after jumps and from the star
     const auto x = q.variable("x", 3);
     q.rate(x, X(-1));  // 3 - t, kicked up by 0.75 each second
     for (const bool rises : {true, false}) {
-        q.event({rises ? 0u : 1u}, var(x) - X(2), rises ? CrossingDirection::kRises
-                                                         : CrossingDirection::kFalls);
+        q.event({rises ? 0u : 1u}, var(x) - X(2),
+                rises ? CrossingDirection::kRises : CrossingDirection::kFalls);
         q.s.events.back().jumps = true;
     }
     q.s.resets.push_back({{0}, x, q.add(var(x) + X(0.75))});

@@ -58,8 +58,8 @@ class OdeSolver {
  public:
     enum class Outcome : std::uint8_t {
         kStepped,
-        kBlewUp,   // no step is short enough: the solution ends here, or the right side has no
-                   // value
+        kBlewUp,  // no step is short enough: the solution ends here, or the right side has no
+                  // value
     };
 
     explicit OdeSolver(const OdeOptions& options = {}) : options_(options) {}
@@ -93,7 +93,7 @@ class OdeSolver {
     double end_s_ = 0;  // of the step that is being tried
     bool rejected_ = false, linear_ = false;
     std::vector<double> x_, rate_, new_x_, new_rate_, scratch_;
-    std::vector<double> k_;                           // stages
+    std::vector<double> k_;                              // stages
     std::vector<double> jacobian_, time_rate_, matrix_;  // of kRodas
     std::vector<std::uint32_t> pivots_;
 };

@@ -68,7 +68,7 @@ struct Options {
     // What goes on continuously beside the net, in the order of this list where their crossings
     // come at one time; outlive the player.
     std::vector<Coupled*> coupled = {};
-    bool record = false;                          // keep the outside events that were taken
+    bool record = false;  // keep the outside events that were taken
 };
 
 class Player {
