@@ -154,8 +154,16 @@ void Builder::place_clause(std::uint32_t node, Place& out) {
                 case Kind::kOldest:
                     out.discipline = Discipline::kOldest;
                     break;
+                case Kind::kFirst:
+                    out.discipline = Discipline::kOldest;
+                    out.by_arrival = true;
+                    break;
                 case Kind::kNewest:
                     out.discipline = Discipline::kNewest;
+                    break;
+                case Kind::kLast:
+                    out.discipline = Discipline::kNewest;
+                    out.by_arrival = true;
                     break;
                 case Kind::kLeast:
                     out.discipline = Discipline::kLeast;
@@ -167,6 +175,7 @@ void Builder::place_clause(std::uint32_t node, Place& out) {
                     out.discipline = Discipline::kAny;
             }
             out.discipline_key = child_expr(node);
+            out.by_arrival = out.by_arrival || has_token(node, Kind::kFirst);
     }
 }
 

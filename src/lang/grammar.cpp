@@ -259,8 +259,8 @@ struct place_clause : sor<
     clause<tok<K::kTokens>, list<group, K::kComma>>,
     clause<tok<K::kHolds>, tok<K::kAt>, tok<K::kMost>, expr>,
     clause<tok<K::kKeeps>, tok<K::kOrder>>,
-    clause<tok<K::kDiscipline>, sor<tok<K::kOldest>, tok<K::kNewest>, seq<tok<K::kLeast>, expr>, seq<tok<K::kMost>, expr>,
-                                    tok<K::kAny>>>,
+    clause<tok<K::kDiscipline>, sor<tok<K::kOldest>, tok<K::kNewest>, tok<K::kFirst>, tok<K::kLast>, tok<K::kAny>,
+                                    seq<sor<tok<K::kLeast>, tok<K::kMost>>, expr, opt<tok<K::kFirst>>>>>,
     clause<tok<K::kOf>, path, opt<parameters>>,
     clause<tok<K::kIs>, path>> {};
 

@@ -107,7 +107,7 @@ class Compiler {
             }
             if (!place.attributes.empty() || place.action.valid() ||
                 d.kind == DurationKind::kOpen ||
-                (place.keeps_order && d.kind != DurationKind::kConstant)) {
+                ((place.keeps_order || place.by_arrival) && d.kind != DurationKind::kConstant)) {
                 raise(p, PlaceKind::kRich);
             }
         }
@@ -218,6 +218,7 @@ class Compiler {
         r.place = p;
         r.attributes = static_cast<std::uint32_t>(place.attributes.size());
         r.discipline = place.discipline;
+        r.by_arrival = place.by_arrival;
         r.keeps_order = place.keeps_order;
         r.action = place.action;
         if (place.discipline == Discipline::kLeast || place.discipline == Discipline::kMost) {
@@ -707,6 +708,11 @@ class Compiler {
             h.add_u64(s.guard.value).add_u64(s.odds.value).add_f64(s.constant_odds);
             if (s.next_event) {
                 h.add_text("next");
+            }
+        }
+        for (const RichPlaceTable& r : out_.rich) {  // what has always been so changes no hash
+            if (r.by_arrival) {
+                h.add_u64(r.place).add_u64(static_cast<std::uint64_t>(r.discipline));
             }
         }
         h.add_u64(out_.code.hash());

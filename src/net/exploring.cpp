@@ -125,7 +125,8 @@ void Engine::collect_unordered() {
         }
     }
     for (std::uint32_t r = 0; r < n.rich.size(); ++r) {
-        if (n.rich[r].keeps_order || n.rich[r].discipline == Discipline::kAny) {
+        if (n.rich[r].keeps_order || n.rich[r].by_arrival ||
+            n.rich[r].discipline == Discipline::kAny) {
             unordered_[r] = 0;
         }
     }

@@ -183,8 +183,8 @@ class Lowering {
         if (!same_duration(effective_duration(keep), effective_duration(gone))) {
             disagree("duration");
         }
-        if (keep.discipline != gone.discipline || keep.key != gone.key ||
-            keep.keeps_order != gone.keeps_order) {
+        if (keep.discipline != gone.discipline || keep.by_arrival != gone.by_arrival ||
+            keep.key != gone.key || keep.keeps_order != gone.keeps_order) {
             disagree("discipline");
         }
         if (!same_attributes(keep, gone)) {

@@ -12,9 +12,10 @@ namespace {
 constexpr std::int64_t kOpen = -1;  // as a duration
 
 // Earliest ready time, then earliest arrival, then serial. `kept`: by a timekeeper, so that of two
-// that wait nobody knows which will be ready first.
-bool older(const Token& a, const Token& b, bool kept) {
-    if (a.ready_at != b.ready_at && !(kept && is_wait(a.ready_at) && is_wait(b.ready_at))) {
+// that wait nobody knows which will be ready first. `by_arrival`: whatever they last.
+bool older(const Token& a, const Token& b, bool by_arrival, bool kept) {
+    if (!by_arrival && a.ready_at != b.ready_at &&
+        !(kept && is_wait(a.ready_at) && is_wait(b.ready_at))) {
         return a.ready_at < b.ready_at;
     }
     if (a.arrival != b.arrival) {
@@ -29,9 +30,9 @@ bool Engine::comes_before(const RichPlaceTable& r, const Token& a, const Token& 
     const bool kept = options_.timekeeper != nullptr;
     switch (r.discipline) {
         case Discipline::kOldest:
-            return older(a, b, kept);
+            return older(a, b, r.by_arrival, kept);
         case Discipline::kNewest:
-            return older(b, a, kept);
+            return older(b, a, r.by_arrival, kept);
         case Discipline::kAny:
             return a.serial < b.serial;
         case Discipline::kLeast:
@@ -45,7 +46,7 @@ bool Engine::comes_before(const RichPlaceTable& r, const Token& a, const Token& 
     if (less(a.key, b.key) || less(b.key, a.key)) {
         return less(a.key, b.key) == (r.discipline == Discipline::kLeast);
     }
-    return older(a, b, kept);
+    return older(a, b, r.by_arrival, kept);
 }
 
 void Engine::place_in_order(std::uint32_t rich, std::uint32_t slot) {

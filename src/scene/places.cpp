@@ -54,6 +54,7 @@ void Elaboration::complete_places() {
         }
         if (node.discipline == lang::Discipline::kDefault) {
             out.discipline = itself.discipline;
+            out.by_arrival = itself.by_arrival;
             out.key = itself.key;
         }
         if (out.attributes.empty()) {
@@ -125,6 +126,7 @@ void Elaboration::complete_place(std::size_t i) {
             }
             break;
     }
+    out.by_arrival = node.by_arrival;
     out.keeps_order = node.keeps_order;
     if (node.capacity) {
         const auto k = constant_integer(node.capacity, place.scope, "how many a place holds");

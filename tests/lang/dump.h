@@ -71,8 +71,8 @@ class Dump {
         for (const Place& p : b.places) {
             item("place", p.name, p.caption, p.is_public, static_cast<int>(p.role), p.does, p.runs,
                  static_cast<int>(p.takes.kind), p.takes.value, p.takes.as, p.tokens, p.capacity,
-                 p.keeps_order, static_cast<int>(p.discipline), p.discipline_key, p.of_type,
-                 p.attributes, p.same_as);
+                 p.keeps_order, static_cast<int>(p.discipline), p.by_arrival, p.discipline_key,
+                 p.of_type, p.attributes, p.same_as);
         }
         for (const Transition& t : b.transitions) {
             item("transition", t.name, t.caption, t.is_public, t.inputs, t.outputs, t.tests,

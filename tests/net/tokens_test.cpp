@@ -126,6 +126,33 @@ TEST_CASE("disciplines: oldest, newest, least, most [unit]") {
     }
 }
 
+TEST_CASE("first means earliest arrival, whatever tokens last [unit]") {
+    struct Case {
+        Discipline discipline;
+        bool by_arrival;
+        std::vector<Value> order;
+    };
+    // Kinds arrive in the order 0, 1, 2 and are ready in the order 1, 2, 0.
+    const Case cases[] = {
+        {Discipline::kOldest, false, {1, 2, 0}}, {Discipline::kOldest, true, {0, 1, 2}},
+        {Discipline::kNewest, false, {0, 2, 1}}, {Discipline::kNewest, true, {2, 1, 0}},
+        {Discipline::kLeast, false, {1, 2, 0}},  {Discipline::kLeast, true, {0, 1, 2}}};
+    for (const Case& c : cases) {
+        Queue q(c.discipline);
+        const Expr stays = Expr::slot(slot(SlotKind::kAttribute, 1), {ValueKind::kTime, 0});
+        q.m.place("queue").duration = computed(stays);
+        q.m.place("queue").by_arrival = c.by_arrival;
+        q.m.place("queue").key = Expr::integer(7);  // the same for all
+        q.token(0, 9);
+        q.token(1, 3);
+        q.token(2, 5);
+        q.take().inputs[0].kind = ArcKind::kTakeNow;
+        Run run(q.m.net());
+        run.until(100);
+        CHECK(kinds_in(run, "out") == c.order);
+    }
+}
+
 TEST_CASE("oldest means earliest ready time, then earliest arrival [unit]") {
     // The token of kind 0 arrives first but is ready last.
     Queue q(Discipline::kOldest);

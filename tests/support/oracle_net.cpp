@@ -303,9 +303,9 @@ class Interpreter {
         for (const Token& t : places_[p]) {
             order.push_back(&t);
         }
-        const auto older = [](const Token* a, const Token* b) {
-            return std::tuple(a->ready, a->arrival, a->serial) <
-                   std::tuple(b->ready, b->arrival, b->serial);
+        const auto older = [&](const Token* a, const Token* b) {
+            return std::tuple(place.by_arrival ? 0 : a->ready, a->arrival, a->serial) <
+                   std::tuple(place.by_arrival ? 0 : b->ready, b->arrival, b->serial);
         };
         std::sort(order.begin(), order.end(), older);
         if (place.discipline == Discipline::kNewest) {

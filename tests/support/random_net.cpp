@@ -139,6 +139,9 @@ class Generator {
         if (has_.records && chance(25)) {
             p.keeps_order = true;
         }
+        if (has_.records && p.discipline != Discipline::kAny && chance(30)) {
+            p.by_arrival = true;
+        }
         if (has_.expressions && p.duration && p.duration->kind == DurationKind::kConstant &&
             chance(50) && (has_.data || !p.attributes.empty())) {
             // n units, n from the token or the datum
@@ -555,6 +558,7 @@ std::string show(const net::NetDraft& draft) {
         text += p.attributes.empty() ? "" : " (kind)";
         const char* disciplines[] = {"", " newest", " least", " most", " any"};
         text += disciplines[static_cast<int>(p.discipline)];
+        text += p.by_arrival ? " by arrival" : "";
         text += p.keeps_order ? " keeps order" : "";
         text += p.capacity ? " holds " + std::to_string(*p.capacity) : "";
         for (const InitialToken& token : p.tokens) {

@@ -62,6 +62,7 @@ struct Place {
     Expr capacity;  // holds at most k
     bool keeps_order = false;
     Discipline discipline = Discipline::kDefault;
+    bool by_arrival = false;            // first, last; `least EXPR first`
     Expr discipline_key;                // least, most
     Path of_type;                       // of Customer
     std::vector<Parameter> attributes;  // of Customer(kind: Kind, due: time): declared here

@@ -74,6 +74,8 @@ struct PlaceDraft {
     // Left out: `auto` with an action, `open` if refined, else 0.
     std::optional<DurationDraft> duration;
     Discipline discipline = Discipline::kOldest;
+    // `first`, `last`, and `least EXPR first`: the order of arrival decides, whatever tokens last.
+    bool by_arrival = false;
     Expr key;                  // of least, most: a number or a time over the token's attributes
     bool keeps_order = false;  // never ready before its predecessor
     std::optional<std::uint32_t> capacity;  // `holds at most k`: tokens, ready or not

@@ -36,6 +36,7 @@ struct RichPlaceTable {
     std::uint32_t place = 0;
     std::uint32_t attributes = 0;
     Discipline discipline = Discipline::kOldest;
+    bool by_arrival = false;
     bool key_is_real = false;
     bool keeps_order = false;
     ProgramIndex key;
