@@ -46,6 +46,8 @@ class Line {
     // Takes the next value if it is this word, or this symbol (`->`, `:`, `=`, `:=`).
     bool word(std::string_view text);
     bool symbol(std::string_view text);
+    // The next value, which stays where it is; null at the end.
+    const lang::Expr* peek() const { return next(); }
     // Takes a text in quotes; empty when the next value is none.
     lang::Caption caption();
     // Takes a value; tells that `wanted` is missing and gives null where there is none.
