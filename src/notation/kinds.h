@@ -8,6 +8,7 @@
 namespace puppetri::notation {
 
 void lower_automaton(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_event_graph(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_queue(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_unit(const lang::Block& block, const lang::File& file, Lowered& out);
 

@@ -76,4 +76,30 @@ void Line::finish(std::string_view forms) {
     }
 }
 
+bool read_data(Line& line, lang::Data& made) {
+    const lang::Path* name = line.path("the name of a datum");
+    if (name == nullptr) {
+        return false;
+    }
+    line.symbol(":");
+    const Expr* type = line.value("the type of the datum");
+    if (type == nullptr) {
+        return false;
+    }
+    made.name = name->steps[0];
+    made.is_public = true;
+    made.span = line.span();
+    made.type = *type;
+    if (type->kind == ExprKind::kBinary && type->op == lang::Op::kEqual) {
+        made.type = type->args[0].value;  // TYPE = VALUE has been read as a comparison
+        made.initial = type->args[1].value;
+    } else if (line.symbol("=")) {
+        if (const Expr* e = line.value("its value at the beginning")) {
+            made.initial = *e;
+        }
+    }
+    line.finish("data NAME: TYPE = VALUE");
+    return true;
+}
+
 }  // namespace puppetri::notation

@@ -66,4 +66,8 @@ class Line {
     std::size_t at_;
 };
 
+// The rest of a line `data NAME: TYPE = VALUE`.
+// Gives   false where it is broken, and has told so.
+bool read_data(Line& line, lang::Data& made);
+
 }  // namespace puppetri::notation

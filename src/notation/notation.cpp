@@ -12,6 +12,8 @@ namespace {
 // In alphabetical order.
 constexpr std::array kNotations = {
     Notation{"automaton", "a finite automaton whose states last", lower_automaton},
+    Notation{"event_graph", "an event graph: events that schedule and cancel others",
+             lower_event_graph},
     Notation{"queue", "a queueing network: sources, stations with servers, routes", lower_queue},
     Notation{"unit", "event units: sequence, parallel, choice, repeat, until, interrupt",
              lower_unit},

@@ -151,30 +151,10 @@ class Reader {
 
     void data(const lang::Property& p) {
         Line line(p, teller_);
-        const lang::Path* name = line.path("the name of a datum");
-        if (name == nullptr) {
-            return;
-        }
-        line.symbol(":");
-        const Expr* type = line.value("the type of the datum");
-        if (type == nullptr) {
-            return;
-        }
         lang::Data made;
-        made.name = name->steps[0];
-        made.is_public = true;
-        made.span = p.span;
-        made.type = *type;
-        if (type->kind == ExprKind::kBinary && type->op == lang::Op::kEqual) {
-            made.type = type->args[0].value;
-            made.initial = type->args[1].value;
-        } else if (line.symbol("=")) {
-            if (const Expr* e = line.value("its value at the beginning")) {
-                made.initial = *e;
-            }
+        if (read_data(line, made)) {
+            model_.data.push_back(std::move(made));
         }
-        line.finish("data NAME: TYPE = VALUE");
-        model_.data.push_back(std::move(made));
     }
 
     void node(const lang::Property& p, NodeKind kind) {
