@@ -44,7 +44,7 @@ Checked<scene::LoadedClips> FileAssets::clips(const scene::ClipRequest& request)
     }
     PUP_TRY(ClipFile file,
             parse_clips(std::move(*bytes), request.path, {.scale = request.scale}, &files_));
-    return to_humanoid(std::move(file), request.path);
+    return clips_for_figures(std::move(file), request.path);
 }
 
 }  // namespace puppetri::io

@@ -118,21 +118,26 @@ motion::Clip converted(const motion::Clip& clip, const Skeleton& raw,
 
 }  // namespace
 
-Checked<scene::LoadedClips> to_humanoid(ClipFile file, const std::string& path) {
+scene::LoadedClips clips_for_figures(ClipFile file, const std::string& path) {
     scene::LoadedClips loaded;
     loaded.notes = std::move(file.notes);
-    if (file.skeleton.joints.empty()) {
-        loaded.clips = std::move(file.clips);
+    loaded.raw = std::move(file.clips);
+    loaded.skeleton = std::move(file.skeleton);
+    if (loaded.skeleton.joints.empty()) {
+        loaded.humanoid = loaded.raw;
         return loaded;
     }
-    const Skeleton raw = rooted(file.skeleton);
+    const Skeleton raw = rooted(loaded.skeleton);
     const std::vector<figure::FoundBone> bones = find_bones(raw);
     auto humanoid = figure::fit_humanoid(raw, {}, bones);
     if (!humanoid) {
-        for (Diagnostic& d : humanoid.error()) {
+        loaded.no_humanoid = std::move(humanoid.error());
+        for (Diagnostic& d : loaded.no_humanoid) {
             d.where.file = path;
         }
-        return Unexpected(std::move(humanoid.error()));
+        // Creatures take lengths by the length of their bones.
+        std::erase_if(loaded.notes, [](const Diagnostic& d) { return d.code == "odd-scale"; });
+        return loaded;
     }
     const double height = humanoid->figure.height_m;
     if (height > 4 || height < 0.3) {
@@ -146,8 +151,8 @@ Checked<scene::LoadedClips> to_humanoid(ClipFile file, const std::string& path) 
                                 "give a scale: `scale 0.0564` for captures in the units of CMU"});
     }
     loaded.hips_height_m = humanoid->figure.hips_height_m;
-    for (const motion::Clip& clip : file.clips) {
-        loaded.clips.push_back(converted(clip, raw, *humanoid));
+    for (const motion::Clip& clip : loaded.raw) {
+        loaded.humanoid.push_back(converted(clip, raw, *humanoid));
     }
     return loaded;
 }

@@ -2,6 +2,7 @@
 #include "puppetri/motion/clip_layers.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "clip_segment.h"
@@ -46,6 +47,33 @@ double combined(double below, double value, double weight, LayerMode mode) {
     return mode == LayerMode::kAdditive ? below + value * weight : lerp(below, value, weight);
 }
 
+// Joint by joint: the values that the pose has, combined with those of the layer.
+void apply_numbers(const ClipLayer& layer, const Say& say, const figure::Skeleton& skeleton,
+                   const figure::DofSet& set, figure::Pose& pose) {
+    const Clip& clip = *layer.clip;
+    const ClipBinding binding = bind_clip({.numbers = clip.numbers}, skeleton, &set);
+    for (const ClipBinding::Joint& joint : binding.joints) {
+        Transform& t = pose.parent_from_joint[joint.joint.value];
+        std::array<double, ClipBinding::kMostDofs> values{};
+        const std::span<double> used(values.data(), joint.dofs.size());
+        figure::values_of(joint.dofs, joint.parent_from_joint_rest, t, used);
+        bool any = false;
+        for (std::size_t i = 0; i < used.size(); ++i) {
+            if (joint.tracks[i] < 0) {
+                continue;
+            }
+            const NumberTrack& track = clip.numbers[static_cast<std::size_t>(joint.tracks[i])];
+            const double weight = say.weight * layer.mask.weight_of(track.target);
+            any = any || weight != 0;
+            used[i] = combined(used[i], sample(track, say.t_s, clip.loops, clip.duration_s), weight,
+                               layer.mode);
+        }
+        if (any) {
+            t = figure::transform_of(joint.dofs, joint.parent_from_joint_rest, used);
+        }
+    }
+}
+
 }  // namespace
 
 double LayerMask::weight_of(std::string_view target) const {
@@ -72,7 +100,7 @@ LayerMask mask_below(const figure::Skeleton& skeleton, std::string_view top) {
 }
 
 void apply_layers(std::span<const ClipLayer> layers, const figure::Skeleton& skeleton, double t_s,
-                  figure::Pose& pose) {
+                  figure::Pose& pose, const figure::DofSet* dofs) {
     for (const ClipLayer& layer : layers) {
         const Say say = say_of(layer, t_s);
         if (say.weight == 0) {
@@ -97,11 +125,14 @@ void apply_layers(std::span<const ClipLayer> layers, const figure::Skeleton& ske
                              layer.mode);
             }
         }
+        if (dofs != nullptr) {
+            apply_numbers(layer, say, skeleton, *dofs, pose);
+        }
     }
 }
 
 Clip flattened(std::span<const ClipLayer> layers, const figure::Skeleton& skeleton,
-               double duration_s, double rate_hz) {
+               double duration_s, double rate_hz, const figure::DofSet* dofs) {
     PUP_REQUIRE(duration_s >= 0 && rate_hz > 0);
     Clip out;
     out.name = layers.empty() ? "layers" : layers.front().clip->name;
@@ -119,11 +150,6 @@ Clip flattened(std::span<const ClipLayer> layers, const figure::Skeleton& skelet
                 out.translations.push_back({t.target, {}});
             }
         }
-        for (const NumberTrack& t : layer.clip->numbers) {
-            if (counting.insert(t.target).second) {
-                out.numbers.push_back({t.target, {}});
-            }
-        }
         for (ClipMark mark : layer.clip->marks) {
             mark.t_s = layer.begin_s + mark.t_s / layer.speed;
             mark.end_s = std::min(layer.begin_s + mark.end_s / layer.speed, duration_s);
@@ -132,12 +158,24 @@ Clip flattened(std::span<const ClipLayer> layers, const figure::Skeleton& skelet
             }
         }
     }
+    for (const ClipLayer& layer : layers) {
+        for (const NumberTrack& t : layer.clip->numbers) {
+            const figure::DofIndex dof =
+                dofs != nullptr ? dofs->find(t.target) : figure::DofIndex{};
+            const bool turned =
+                dof.valid() &&
+                turning.count(skeleton.joints[dofs->dofs[dof.value].joint.value].name) != 0;
+            if (!turned && counting.insert(t.target).second) {
+                out.numbers.push_back({t.target, {}});
+            }
+        }
+    }
     std::stable_sort(out.marks.begin(), out.marks.end(),
                      [](const ClipMark& a, const ClipMark& b) { return a.t_s < b.t_s; });
     const figure::Pose rest = figure::rest_pose(skeleton);
     const auto frame = [&](double t) {
         figure::Pose pose = rest;
-        apply_layers(layers, skeleton, t, pose);
+        apply_layers(layers, skeleton, t, pose, dofs);
         for (RotationTrack& track : out.rotations) {
             RotationKey& key = track.keys.emplace_back();
             key.t_s = t;

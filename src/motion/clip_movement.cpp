@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "creature_clip.h"
 #include "puppetri/base/require.h"
 #include "puppetri/math/rotation.h"
 #include "times.h"
@@ -20,12 +21,14 @@ const figure::Figure& any_humanoid() {
 class ClipSource final : public PoseSource {
  public:
     ClipSource(std::shared_ptr<const Clip> clip, std::span<const std::size_t> rotations,
-               std::span<const std::size_t> numbers, double speed, double scale)
+               std::span<const std::size_t> numbers, double speed, double scale,
+               double advances_m_s)
         : clip_(std::move(clip)),
           rotations_(rotations.begin(), rotations.end()),
           numbers_(numbers.begin(), numbers.end()),
           speed_(speed),
           scale_(scale),
+          advances_m_s_(advances_m_s),
           place_(clip_->find_translation(kHips)),
           turn_(clip_->find_rotation(kHips)) {
         const Transform first = hips(0);
@@ -46,6 +49,7 @@ class ClipSource final : public PoseSource {
         if (place_ != nullptr) {
             Transform from_start = inverse(start_) * hips(t);
             from_start.translation = from_start.translation * scale_;
+            from_start.translation.z += advances_m_s_ * t_s;
             frame.start_from_pelvis = from_start;
         }
     }
@@ -64,7 +68,7 @@ class ClipSource final : public PoseSource {
 
     std::shared_ptr<const Clip> clip_;
     std::vector<std::size_t> rotations_, numbers_;
-    double speed_, scale_;
+    double speed_, scale_, advances_m_s_;
     const VectorTrack* place_;
     const RotationTrack* turn_;
     Transform start_;
@@ -72,37 +76,35 @@ class ClipSource final : public PoseSource {
 
 }  // namespace
 
-ClipMaker::ClipMaker(std::string name, std::shared_ptr<const Clip> clip, ClipPlay play)
-    : clip_(std::move(clip)), play_(play) {
-    PUP_REQUIRE(clip_ != nullptr && play_.speed > 0);
+ClipMaker::ClipMaker(std::string name, PlayableClip clip, double speed)
+    : name_(std::move(name)), clip_(std::move(clip)), speed_(speed) {
+    PUP_REQUIRE((clip_.humanoid != nullptr || clip_.raw != nullptr) && speed_ > 0);
+    spec_.name = name_;
+    spec_.duration_s = any().duration_s / speed_;
+    spec_.loops = any().loops;
+    if (clip_.humanoid == nullptr) {
+        return;
+    }
+    const Clip& tracks = *clip_.humanoid;
     const figure::Figure& figure = any_humanoid();
     const figure::DofSet dofs = figure::humanoid_dofs(figure);
-    spec_.name = std::move(name);
-    spec_.duration_s = clip_->duration_s / play_.speed;
-    spec_.loops = clip_->loops;
-    const auto driven = [&](std::string_view joint) {
-        const auto limb = limb_of_joint(figure, joint);
-        return limb && play_.only.has(*limb);
-    };
-    for (std::size_t i = 0; i < clip_->rotations.size(); ++i) {
-        const std::string& joint = clip_->rotations[i].target;
-        if (joint != kHips && driven(joint)) {
+    for (std::size_t i = 0; i < tracks.rotations.size(); ++i) {
+        const std::string& joint = tracks.rotations[i].target;
+        if (joint != kHips && limb_of_joint(figure, joint)) {
             spec_.joints.push_back(joint);
             rotations_.push_back(i);
         }
     }
-    for (std::size_t i = 0; i < clip_->numbers.size(); ++i) {
-        const std::string& name_of_dof = clip_->numbers[i].target;
-        const std::string_view joint =
-            figure::humanoid_joint(std::string_view(name_of_dof).substr(0, name_of_dof.find('.')));
-        if (dofs.find(name_of_dof).valid() && driven(joint)) {
-            spec_.dofs.push_back(name_of_dof);
+    for (std::size_t i = 0; i < tracks.numbers.size(); ++i) {
+        if (dofs.find(tracks.numbers[i].target).valid()) {
+            spec_.dofs.push_back(tracks.numbers[i].target);
             numbers_.push_back(i);
         }
     }
-    spec_.travels = clip_->find_translation(kHips) != nullptr && play_.only.has(Limb::kPelvis);
-    for (const ClipMark& mark : clip_->marks) {
-        const double begin = mark.t_s / play_.speed, end = mark.end_s / play_.speed;
+    spec_.travels = tracks.find_translation(kHips) != nullptr;
+    advances_ = spec_.travels ? clip_.advances_m_s : 0;
+    for (const ClipMark& mark : tracks.marks) {
+        const double begin = mark.t_s / speed_, end = mark.end_s / speed_;
         const bool left =
             mark.target == "leftFoot" || mark.target == "left_leg" || mark.target == "leftToes";
         const bool right =
@@ -116,12 +118,32 @@ ClipMaker::ClipMaker(std::string name, std::shared_ptr<const Clip> clip, ClipPla
     }
 }
 
+bool ClipMaker::plays_on(const figure::Figure& figure) const {
+    if (figure.humanoid()) {
+        return clip_.humanoid != nullptr && limbs_of(figure, spec_).bits != 0;
+    }
+    if (clip_.raw == nullptr) {
+        return false;
+    }
+    const PosedSpec spec =
+        make_creature_clip(name_, clip_.raw, clip_.skeleton, figure, speed_, clip_.advances_m_s)
+            .spec;
+    return !spec.dofs.empty() || !spec.joints.empty();
+}
+
 MovementPtr ClipMaker::make(const OwnCall& call) const {
-    const double own = call.context.figure.hips_height_m;
-    const double scale = play_.hips_height_m > 0 ? own / play_.hips_height_m : 1;
-    return make_posed(
-        call.context, spec_,
-        std::make_shared<ClipSource>(clip_, rotations_, numbers_, play_.speed, scale));
+    const figure::Figure& figure = call.context.figure;
+    if (!figure.humanoid()) {
+        PUP_REQUIRE(clip_.raw != nullptr);
+        CreatureClip made = make_creature_clip(name_, clip_.raw, clip_.skeleton, figure, speed_,
+                                               clip_.advances_m_s);
+        return make_posed(call.context, made.spec, std::move(made.source));
+    }
+    PUP_REQUIRE(clip_.humanoid != nullptr);
+    const double scale = clip_.hips_height_m > 0 ? figure.hips_height_m / clip_.hips_height_m : 1;
+    return make_posed(call.context, spec_,
+                      std::make_shared<ClipSource>(clip_.humanoid, rotations_, numbers_, speed_,
+                                                   scale, advances_));
 }
 
 DurationRange ClipMaker::declared(const Arguments&) const {

@@ -3,11 +3,10 @@
 #include "clip_root.h"
 
 namespace puppetri::motion {
-namespace {
 
-Transform power(Transform base, double exponent) {
+Transform power(Transform base, double times) {
     Transform result;
-    for (auto n = static_cast<std::uint64_t>(clamp(exponent, 0, 1e15)); n != 0; n >>= 1) {
+    for (auto n = static_cast<std::uint64_t>(clamp(times, 0, 1e15)); n != 0; n >>= 1) {
         if (n & 1) {
             result = result * base;
         }
@@ -16,8 +15,6 @@ Transform power(Transform base, double exponent) {
     result.rotation = normalized(result.rotation);
     return result;
 }
-
-}  // namespace
 
 Transform planar_root(const Clip& clip, double t_s) {
     Transform at;

@@ -5,6 +5,9 @@
 
 namespace puppetri::motion {
 
+// `base` so many times; needs a whole number, not negative.
+Transform power(Transform base, double times);
+
 // Where the root stands and where it looks at an instant within the clip; no height, no lean. The
 // identity where the clip has no such tracks.
 Transform planar_root(const Clip& clip, double t_s);

@@ -85,17 +85,24 @@ class FormulaSource final : public PoseSource {
         for (const std::vector<FormulaKey>& keys : formula_->dof_keys) {
             NumberTrack& track = numbers_.emplace_back();
             for (const FormulaKey& k : keys) {
-                track.keys.push_back(key_of<NumberKey>(k));
-                track.keys.back().value = evaluator.value(k.value[0]);
+                NumberKey& key = track.keys.emplace_back(key_of<NumberKey>(k));
+                key.value = evaluator.value(k.value[0]);
+                key.in = rate(evaluator, k.in[0]);
+                key.out = rate(evaluator, k.out[0]);
             }
             close(track.keys);
         }
         for (const std::vector<FormulaKey>& keys : formula_->path_keys) {
             VectorTrack& track = places_.emplace_back();
             for (const FormulaKey& k : keys) {
-                track.keys.push_back(key_of<VectorKey>(k));
-                track.keys.back().value = {evaluator.value(k.value[0]), evaluator.value(k.value[1]),
-                                           evaluator.value(k.value[2])};
+                const auto three = [&](const std::array<ProgramIndex, 3>& p) {
+                    return Vec3{rate(evaluator, p[0]), rate(evaluator, p[1]),
+                                rate(evaluator, p[2])};
+                };
+                VectorKey& key = track.keys.emplace_back(key_of<VectorKey>(k));
+                key.value = three(k.value);
+                key.in = three(k.in);
+                key.out = three(k.out);
             }
             close(track.keys);
         }
@@ -124,6 +131,10 @@ class FormulaSource final : public PoseSource {
     }
 
  private:
+    // Rates that are not said are 0.
+    static double rate(const Evaluator& evaluator, ProgramIndex program) {
+        return program.valid() ? evaluator.value(program) : 0;
+    }
     // What loops ends where it began.
     template <class Key>
     void close(std::vector<Key>& keys) const {
@@ -271,6 +282,16 @@ Diagnostics FormulaMaker::check(const Arguments& arguments, const figure::DofSet
                                 "let it take longer, or move the key"});
                 return list;
             }
+        }
+    }
+    for (std::size_t i = 0; i < spec.contacts.size(); ++i) {
+        if (spec.contacts[i].end_s > spec.duration_s + 1e-9) {
+            list.push_back({Severity::kError, "key-after-end", formula_->contact_where[i],
+                            "movement " + spec.name + ", contact until " +
+                                told_seconds(spec.contacts[i].end_s),
+                            "this contact ends after the end, at " + told_seconds(spec.duration_s),
+                            "let it take longer, or end the contact before"});
+            return list;
         }
     }
     std::vector<double> locals(formula_->locals.size());

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "arm_state.h"
+#include "clip_root.h"
 #include "foot_path.h"
 #include "posed_creature.h"
 #include "puppetri/base/require.h"
@@ -18,6 +19,7 @@
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/library.h"
 #include "puppetri/motion/solve_controls.h"
+#include "rounds.h"
 
 namespace puppetri::motion {
 namespace {
@@ -31,6 +33,8 @@ using figure::Pose;
 constexpr int kMostDofsOfJoint = 6;
 // What rests at the end rests as it was just before: a step there is no movement any more.
 constexpr double kBeforeEnd_s = 1e-9;
+// A contact so near to the end of a round goes on in the next.
+constexpr double kSeam_s = 1e-6;
 
 // Reused by every posing movement of a thread; results never depend on what it holds.
 struct Scratch {
@@ -72,10 +76,7 @@ class Posed final : public Movement {
         start_ = context.now;
         limbs = limbs_of(figure_, spec);
         duration = duration_of(context, spec.duration_s);
-        pace_ = duration.ticks > 0 ? spec.duration_s / duration.seconds() : 1;
-        if (!spec.stretches) {
-            pace_ = std::fmax(pace_, 1);
-        }
+        rounds_ = Rounds(spec, duration);
         base_ = make_idle(context,
                           {.limbs = limbs, .duration_s = spec.duration_s, .gets_up = spec.gets_up});
         find_drives();
@@ -84,6 +85,7 @@ class Posed final : public Movement {
         world_from_start_ = {
             pelvis.rotation,
             {pelvis.translation.x, floor_under(figure_, context), pelvis.translation.z}};
+        find_lap();
         plan_contacts();
         join(context);
         tell_phases();
@@ -194,34 +196,60 @@ class Posed final : public Movement {
         return {based_[0] && t_s >= down_s_[0], based_[1] && t_s >= down_s_[1]};
     }
 
-    // From time in the movement to time of the source.
-    double source_time(double t_s) const {
-        const double t = t_s * pace_;
-        return spec_.loops && spec_.duration_s > 0
-                   ? t - spec_.duration_s * std::floor(t / spec_.duration_s)
-                   : clamp(t, 0, spec_.duration_s - kBeforeEnd_s);
+    // How far a round takes it, in start space.
+    void find_lap() {
+        if (!spec_.loops || !spec_.travels) {
+            return;
+        }
+        const auto place_at = [&](double source_s) {
+            Scratch& s = scratch();
+            const Transform at = frame_at(source_s, s).start_from_pelvis;
+            return Transform{about_y(heading_of(at.rotation)),
+                             {at.translation.x, 0, at.translation.z}};
+        };
+        const Transform first = place_at(0);
+        lap_ = place_at(spec_.duration_s) * inverse(first);
+    }
+    Transform world_from_round(double round) const {
+        return world_from_start_ * power(lap_, round);
     }
 
-    // The movement's own controls and pose, without regard to what it found.
-    void own(double t_s, Controls& c, Scratch& s) const {
+    PoseFrame frame_at(double source_s, Scratch& s) const {
         s.dofs.resize(spec_.dofs.size());
         s.joints.resize(spec_.joints.size());
         s.paths.resize(spec_.paths.size());
         PoseFrame frame{s.dofs, s.joints, s.paths, {}};
-        base_->sample(t_s, c);
-        const double source_s = source_time(t_s);
         source_->sample(source_s, frame);
+        return frame;
+    }
+
+    // The movement's own controls and pose, without regard to what it found.
+    void own(double t_s, Controls& c, Scratch& s) const {
+        base_->sample(t_s, c);
+        const Rounds::At at = rounds_.at(t_s, kBeforeEnd_s);
+        PoseFrame frame = frame_at(at.source_s, s);
         if (spec_.travels) {
-            const Transform pelvis = world_from_start_ * frame.start_from_pelvis;
+            const Transform pelvis = world_from_round(at.round) * frame.start_from_pelvis;
             c.pelvis = {pelvis.translation, pelvis.rotation};
         }
         solve_controls(figure_, c, s.own);
         pose_joints(frame, s.own);
         controls_from_pose(figure_, s.own, posed_, c);
         follow_paths(frame, c, s.own);
+        // Locks are those of the first round.
+        const Transform now_from_first =
+            at.round > 0 ? world_from_round(at.round) * inverse(world_from_start_) : Transform{};
         for (const Lock& lock : locks_) {
-            lock.apply(source_s, c.legs[lock.side]);
+            LegControl leg = carried(inverse(now_from_first), c.legs[lock.side]);
+            lock.apply(at.source_s, leg);
+            c.legs[lock.side] = carried(now_from_first, leg);
         }
+    }
+
+    static LegControl carried(const Transform& by, LegControl leg) {
+        leg.ankle_world = by * leg.ankle_world;
+        leg.foot_rotation_world = normalized(by.rotation * leg.foot_rotation_world);
+        return leg;
     }
 
     void pose_joints(const PoseFrame& frame, Pose& pose) const {
@@ -312,17 +340,28 @@ class Posed final : public Movement {
             if (!posed_.has(leg_of(contact.side)) && !paths_.has(leg_of(contact.side))) {
                 continue;
             }
-            locks.push_back(lock_of(contact, i));
+            // A foot that stands through the end of a round stands where the next one has it.
+            std::optional<LegControl> goes_on;
+            for (std::size_t k = 0; spec_.loops && k < spec_.contacts.size(); ++k) {
+                const FootContact& next = spec_.contacts[k];
+                if (next.side == contact.side && next.begin_s <= kSeam_s &&
+                    contact.end_s >= spec_.duration_s - kSeam_s && k != i) {
+                    goes_on = carried(world_from_round(1) * inverse(world_from_start_),
+                                      lock_of(next, k, {}).place);
+                }
+            }
+            locks.push_back(lock_of(contact, i, goes_on));
         }
         locks_ = std::move(locks);
     }
 
-    Lock lock_of(const FootContact& contact, std::size_t number) const {
+    Lock lock_of(const FootContact& contact, std::size_t number,
+                 const std::optional<LegControl>& place) const {
         constexpr double kMoment_s = 1e-4, kFade_s = 0.25;
         const std::size_t side = static_cast<std::size_t>(index_of(contact.side));
         const auto leg_at = [&](double source_s) {
             Controls c = start_;
-            own(source_s / pace_, c, scratch());
+            own(source_s / rounds_.pace(), c, scratch());
             return c.legs[side];
         };
         const auto rate_between_legs = [&](const LegControl& a, const LegControl& b) {
@@ -336,6 +375,7 @@ class Posed final : public Movement {
         lock.place.foot_rotation_world = about_y(heading_of(lock.place.foot_rotation_world));
         lock.place.ankle_world.y = world_from_start_.translation.y + figure_.ankle_height_m;
         lock.place.toe_bend_rad = 0;
+        lock.place = place.value_or(lock.place);
         // Half of the gap to the neighbouring contact of that foot.
         double before_s = std::fmin(kFade_s, contact.begin_s),
                after_s = std::fmin(kFade_s, spec_.duration_s - contact.end_s);
@@ -365,7 +405,8 @@ class Posed final : public Movement {
         own(0, first, scratch());
         own(kMoment, later, scratch());
         const ControlsRate rate = rate_between(first, later, kMoment);
-        const double settle = spec_.reached_s > 0 ? spec_.reached_s / pace_ : spec_.settle_s;
+        const double settle =
+            spec_.reached_s > 0 ? spec_.reached_s / rounds_.pace() : spec_.settle_s;
         const double blend = std::fmin(settle, std::fmax(0.1, duration.seconds()));
         blend_s_ = blend;
         join_ = InertialFigure(context, first, later, blend);
@@ -409,44 +450,57 @@ class Posed final : public Movement {
                 }
                 continue;
             }
-            double until = 0;
-            std::vector<FootContact> own_contacts;
-            for (const FootContact& c : spec_.contacts) {
-                if (c.side == side) {
-                    own_contacts.push_back(c);
+            SimTime until;
+            for (const auto& [begin, end] : contacts_of(side)) {
+                if (begin > until) {
+                    phases.push_back({leg, Phase::kSwing, until, begin});
+                    events.push_back({begin, "foot_strike", leg});
                 }
+                phases.push_back({leg, Phase::kSupport, begin, end});
+                until = std::max(until, end);
             }
-            std::sort(
-                own_contacts.begin(), own_contacts.end(),
-                [](const FootContact& a, const FootContact& b) { return a.begin_s < b.begin_s; });
-            for (const FootContact& c : own_contacts) {
-                if (c.begin_s > until) {
-                    phases.push_back(
-                        {leg, Phase::kSwing, to_time(until / pace_), to_time(c.begin_s / pace_)});
-                    events.push_back({to_time(c.begin_s / pace_), "foot_strike", leg});
-                }
-                phases.push_back(
-                    {leg, Phase::kSupport, to_time(c.begin_s / pace_), to_time(c.end_s / pace_)});
-                until = std::fmax(until, c.end_s);
-            }
-            if (until < spec_.duration_s) {
-                phases.push_back({leg, Phase::kSwing, to_time(until / pace_), duration});
+            if (until < duration) {
+                phases.push_back({leg, Phase::kSwing, until, duration});
             }
         }
-        for (const PosedSpec::Event& e : spec_.events) {
-            events.push_back({to_time(e.at_s / pace_), e.name, e.limb});
-        }
+        rounds_.tell_events(spec_, events);
         std::stable_sort(events.begin(), events.end(),
                          [](const MovementEvent& a, const MovementEvent& b) {
                              return a.after_start < b.after_start;
                          });
     }
 
+    // Of all rounds, in order; those that meet are one.
+    std::vector<std::pair<SimTime, SimTime>> contacts_of(Side side) const {
+        std::vector<FootContact> own;
+        for (const FootContact& c : spec_.contacts) {
+            if (c.side == side) {
+                own.push_back(c);
+            }
+        }
+        std::sort(own.begin(), own.end(),
+                  [](const FootContact& a, const FootContact& b) { return a.begin_s < b.begin_s; });
+        std::vector<std::pair<SimTime, SimTime>> all;
+        for (int round = 0; round < rounds_.told(); ++round) {
+            for (const FootContact& c : own) {
+                const SimTime begin = rounds_.time_of(c.begin_s, round),
+                              end = rounds_.time_of(c.end_s, round);
+                if (!all.empty() && begin <= all.back().second + to_time(kSeam_s)) {
+                    all.back().second = std::max(all.back().second, end);
+                } else {
+                    all.emplace_back(begin, end);
+                }
+            }
+        }
+        return all;
+    }
+
     const Figure& figure_;
     PosedSpec spec_;
     std::shared_ptr<const PoseSource> source_;
     MovementPtr base_;
-    double pace_ = 1;     // seconds of the source per second
+    Rounds rounds_;
+    Transform lap_;       // by which a round takes it, in start space
     double blend_s_ = 0;  // over which the state that was found fades
     Controls start_;
     Transform world_from_start_;

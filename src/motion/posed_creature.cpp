@@ -8,9 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "clip_root.h"
 #include "puppetri/base/require.h"
 #include "puppetri/math/rotation.h"
-#include "times.h"
+#include "rounds.h"
 
 namespace puppetri::motion {
 namespace {
@@ -24,7 +25,7 @@ constexpr std::size_t kMostDofsOfJoint = 6;
 struct Scratch {
     std::vector<double> dofs;
     std::vector<Quat> joints;
-    std::vector<Vec3> paths;
+    std::vector<Vec3> paths, places;
 };
 
 class PosedCreature final : public Movement {
@@ -45,15 +46,23 @@ class PosedCreature final : public Movement {
         overlays = limb_set(Limb::kBody);
         duration =
             context.duration.ticks >= 0 ? context.duration : whole_milliseconds(spec_.duration_s);
-        pace_ = duration.ticks > 0 ? spec_.duration_s / duration.seconds() : 1;
-        for (const PosedSpec::Event& event : spec_.events) {
-            events.push_back(
-                {to_time(pace_ > 0 ? event.at_s / pace_ : event.at_s), event.name, event.limb});
-        }
+        rounds_ = Rounds(spec_, duration);
+        rounds_.tell_events(spec_, events);
+        std::stable_sort(events.begin(), events.end(),
+                         [](const MovementEvent& a, const MovementEvent& b) {
+                             return a.after_start < b.after_start;
+                         });
         find_drives();
         Scratch s;
-        first_place_ = frame_at(0, s);
-        first_ = path_ >= 0 ? s.paths[static_cast<std::size_t>(path_)] : Vec3{};
+        const auto way = [&] {
+            return path_ >= 0 ? s.paths[static_cast<std::size_t>(path_)] : Vec3{};
+        };
+        lap_ = source_at(spec_.duration_s, s);
+        lap_way_ = way();
+        from_first_ = inverse(source_at(0, s));
+        lap_ = from_first_ * lap_;
+        first_ = way();
+        lap_way_ = lap_way_ - first_;
     }
 
     void sample(double t_s, Controls& out) const override {
@@ -61,13 +70,15 @@ class PosedCreature final : public Movement {
             return;
         }
         static thread_local Scratch s;
-        const Transform place = frame_at(t_s, s);
+        const Rounds::At at = rounds_.at(t_s);
+        const Transform place = power(lap_, at.round) * from_first_ * source_at(at.source_s, s);
         Transform world = {start_.rotation_world, start_.position_world};
         if (spec_.travels) {
-            world = world * (inverse(first_place_) * place);
+            world = world * place;
         }
         if (path_ >= 0) {
-            const Vec3 way = s.paths[static_cast<std::size_t>(path_)] - first_;
+            const Vec3 way =
+                s.paths[static_cast<std::size_t>(path_)] - first_ + lap_way_ * at.round;
             world.translation = world.translation + rotate(start_.rotation_world, way);
         }
         out.pelvis = {world.translation, normalized(world.rotation)};
@@ -78,9 +89,12 @@ class PosedCreature final : public Movement {
             return;
         }
         static thread_local Scratch s;
-        frame_at(t_s, s);
+        source_at(rounds_.at(t_s).source_s, s);
         for (std::size_t i = 0; i < joints_.size(); ++i) {
             pose.parent_from_joint[joints_[i].value].rotation = s.joints[i];
+        }
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            pose.parent_from_joint[places_[i].value].translation = s.places[i];
         }
         for (const Drive& drive : drives_) {
             const auto dofs =
@@ -119,34 +133,37 @@ class PosedCreature final : public Movement {
             }
             found->from[dof.value - found->range.first] = static_cast<std::int32_t>(i);
         }
-        for (const std::string& name : spec_.joints) {
-            joints_.push_back(figure_.skeleton.find(name));
-            PUP_REQUIRE(joints_.back().valid());
-        }
+        const auto find = [&](const std::vector<std::string>& names,
+                              std::vector<JointIndex>& joints) {
+            for (const std::string& name : names) {
+                joints.push_back(figure_.skeleton.find(name));
+                PUP_REQUIRE(joints.back().valid());
+            }
+        };
+        find(spec_.joints, joints_);
+        find(spec_.places, places_);
     }
 
-    // Fills the scratch and gives the place of a clip that travels.
-    Transform frame_at(double t_s, Scratch& s) const {
+    // Fills the scratch and gives how far a clip that travels has come.
+    Transform source_at(double source_s, Scratch& s) const {
         s.dofs.resize(spec_.dofs.size());
         s.joints.resize(spec_.joints.size());
         s.paths.resize(spec_.paths.size());
-        PoseFrame frame{s.dofs, s.joints, s.paths, {}};
-        const double t = t_s * pace_, end = spec_.duration_s;
-        const double turns = spec_.loops && end > 0 ? std::floor(t / end) : 0;
-        source_->sample(clamp(t - turns * end, 0, end), frame);
+        s.places.resize(spec_.places.size());
+        PoseFrame frame{s.dofs, s.joints, s.paths, {}, s.places};
+        source_->sample(source_s, frame);
         return frame.start_from_pelvis;
     }
-
     const figure::Figure& figure_;
     PosedSpec spec_;
     std::shared_ptr<const PoseSource> source_;
     PelvisControl start_;
     int path_ = -1;
-    double pace_ = 1;
-    Vec3 first_;
-    Transform first_place_;
+    Rounds rounds_;
+    Vec3 first_, lap_way_;
+    Transform from_first_, lap_;
     std::vector<Drive> drives_;
-    std::vector<JointIndex> joints_;
+    std::vector<JointIndex> joints_, places_;
 };
 
 }  // namespace

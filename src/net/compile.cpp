@@ -93,9 +93,9 @@ class Compiler {
             out_.place[p].kind = std::max(out_.place[p].kind, kind);
         };
         std::vector<bool> zero(count);
-        out_.paced = net_.schedule.empty() &&
-                     std::none_of(net_.events.begin(), net_.events.end(),
-                                  [](const EventDraft& e) { return e.crossing; });
+        out_.paced =
+            net_.schedule.empty() && std::none_of(net_.events.begin(), net_.events.end(),
+                                                  [](const EventDraft& e) { return e.crossing; });
         for (std::uint32_t p = 0; p < count; ++p) {
             const PlaceDraft& place = net_.places[p];
             const DurationDraft d = effective_duration(place);

@@ -19,6 +19,7 @@
 
 #include "library.h"
 #include "puppetri/figure/linkage.h"
+#include "puppetri/motion/clip_movement.h"
 #include "puppetri/motion/formula_movement.h"
 #include "puppetri/motion/library.h"
 #include "puppetri/motion/own_movement.h"
@@ -58,7 +59,9 @@ struct OwnDefinition {
     const lang::Block* block = nullptr;
     motion::OwnMovementPtr movement = {};
     std::shared_ptr<const motion::FormulaMaker> formula = {};  // of a movement by formula
-    bool humanoid = true;                                      // its DOFs are those of humanoids
+    std::shared_ptr<const motion::ClipMaker> clip = {};        // of a clip
+    Diagnostics no_humanoid = {};        // of a clip: why humanoids cannot play it
+    bool humanoid = true;                // its DOFs are those of humanoids
     std::vector<std::string> dofs = {};  // that it drives, and where it says so
     std::vector<lang::Span> dof_spans = {};
     std::vector<std::string> events = {};  // that it raises
@@ -309,6 +312,8 @@ class Elaboration {
         const std::function<void(const std::string&, motion::ParameterType, lang::Dimension)>& add);
     void check_own_call(const OwnDefinition& definition, const motion::BoundCall& call,
                         lang::Span where);
+    void check_clip_call(const OwnDefinition& definition, const motion::BoundCall& call,
+                         lang::Span where);
     // A movement that may be an argument of others: `carry` in `arms: carry(ball)`.
     bool is_argument_movement(std::string_view name, std::uint32_t file);
     std::vector<std::string> own_movement_names(std::uint32_t file) const;

@@ -111,17 +111,20 @@ std::optional<ProgramIndex> FormulaCompiler::program_of(const lang::Expr& e, lan
     return compiled(value->value, e);
 }
 
-std::optional<std::array<ProgramIndex, 3>> FormulaCompiler::path(const lang::Expr& e) {
+std::optional<std::array<ProgramIndex, 3>> FormulaCompiler::path(const lang::Expr& e,
+                                                                 lang::Dimension wanted) {
     const auto at = point(e);
     if (!at) {
         return std::nullopt;
     }
     std::array<ProgramIndex, 3> out;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (!(*at)[k].fits(lang::dimension::kLength)) {
+        if (!(*at)[k].fits(wanted)) {
             e_.error("wrong-unit", e.span,
-                     element_ + " is a place, and this has " + lang::to_text((*at)[k].dimension),
-                     "write it as (x, y, z) m");
+                     "three coordinates of " + element_ + " are wanted, each " +
+                         lang::to_text(wanted) + ", and this has " +
+                         lang::to_text((*at)[k].dimension),
+                     "write it as (x, y, z) " + std::string(lang::example_unit(wanted)));
             return std::nullopt;
         }
         const auto index = compiled((*at)[k].value, e);

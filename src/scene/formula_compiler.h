@@ -48,7 +48,8 @@ class FormulaCompiler {
     // Of the first dimension, or of the other where the formula gives that.
     std::optional<ProgramIndex> program_of(const lang::Expr& e, lang::Dimension usual,
                                            lang::Dimension other);
-    std::optional<std::array<ProgramIndex, 3>> path(const lang::Expr& e);
+    // Three coordinates of that dimension.
+    std::optional<std::array<ProgramIndex, 3>> path(const lang::Expr& e, lang::Dimension wanted);
     // The values of keys do not depend on the time.
     void without_time(bool without) { without_time_ = without; }
 

@@ -2,18 +2,13 @@
 // Movements that a file defines: `movement nod(me: actor) { ... }`. What `does` may call beside the
 // library, with the same signatures and the same errors.
 #include <algorithm>
-#include <limits>
 
-#include "elaboration.h"
-#include "formula_compiler.h"
+#include "formula_block.h"
 #include "puppetri/lang/units.h"
-#include "puppetri/motion/formula_movement.h"
 
 namespace puppetri::scene {
 
-using motion::Limb;
 using motion::ParameterType;
-using motion::PathSpace;
 
 namespace {
 
@@ -35,484 +30,12 @@ constexpr NamedType kTypes[] = {
     {"time", ParameterType::kTime, lang::dimension::kTime},
 };
 
-bool is_thing(ParameterType type) {
-    return type == ParameterType::kActor || type == ParameterType::kProp ||
-           type == ParameterType::kPoint;
-}
-
-struct NamedEnd {
-    const char* name;
-    Limb limb;
-    PathSpace space;
-};
-constexpr NamedEnd kEnds[] = {
-    {"left_foot", Limb::kLeftLeg, PathSpace::kStart},
-    {"left_hand", Limb::kLeftArm, PathSpace::kChest},
-    {"pelvis", Limb::kPelvis, PathSpace::kStart},
-    {"right_foot", Limb::kRightLeg, PathSpace::kStart},
-    {"right_hand", Limb::kRightArm, PathSpace::kChest},
-};
+}  // namespace
 
 const figure::DofSet& mannequin_dofs() {
     static const figure::DofSet dofs = figure::humanoid_dofs(figure::make_mannequin(1.75));
     return dofs;
 }
-
-bool is_word(const lang::Expr& e, std::string_view word) {
-    return e.kind == lang::ExprKind::kPath && e.path.steps.size() == 1 &&
-           e.path.steps[0].text == word;
-}
-bool is_symbol(const lang::Expr& e, std::string_view text) {
-    return e.kind == lang::ExprKind::kSymbol && e.text == text;
-}
-
-}  // namespace
-
-// A block `movement` or `keyframes`, on its way to a definition. Both know formulas and keys.
-class FormulaBlock {
- public:
-    FormulaBlock(Elaboration& elaboration, const lang::Block& block)
-        : e_(elaboration), block_(block), compiler_(elaboration, formula_) {
-        formula_.spec.name = block.name.text;
-        signature_.name = block.name.text;
-    }
-
-    OwnDefinition define() {
-        const std::size_t before = e_.diagnostics.size();
-        me_ = e_.read_own_parameters(
-            block_, signature_,
-            [this](const std::string& name, ParameterType type, lang::Dimension dimension) {
-                is_thing(type) ? compiler_.add_thing(name) : compiler_.add_number(name, dimension);
-            });
-        for (const lang::Property& p : block_.properties) {
-            read(p);
-        }
-        if (!formula_.takes.valid()) {
-            e_.error("no-duration", block_.name.span, "it does not say how long it takes",
-                     "write `takes 1 s`");
-        }
-        if (formula_.spec.dofs.empty() && formula_.spec.paths.empty()) {
-            e_.error("nothing-moves", block_.name.span, "it moves nothing",
-                     "write `" + (me_.empty() ? "me" : me_) + ".head.flex = ...`");
-        }
-        const bool good = std::none_of(
-            e_.diagnostics.begin() + static_cast<std::ptrdiff_t>(before), e_.diagnostics.end(),
-            [](const Diagnostic& d) { return d.severity == Severity::kError; });
-        OwnDefinition out{.block = &block_};
-        for (const auto& event : formula_.spec.events) {
-            out.events.push_back(event.name);
-        }
-        if (!good) {
-            return out;
-        }
-        formula_.spec.reached_s = first_keys_s();
-        out.limbs_of_definition(signature_, formula_.spec);
-        out.dof_spans = std::move(dof_spans_);
-        const std::vector<std::string> dofs = formula_.spec.dofs;
-        auto maker = std::make_shared<const motion::FormulaMaker>(std::move(formula_));
-        out.dofs = dofs;
-        out.formula = maker;
-        out.movement = std::make_shared<const motion::OwnMovement>(std::move(signature_), maker);
-        return out;
-    }
-
- private:
-    void read(const lang::Property& p) {
-        const auto& steps = p.name.steps;
-        if (steps.size() == 1) {
-            key_at_.reset();
-        }
-        if (p.has_children) {
-            e_.error("wrong-property", p.span, "nothing can stand in braces here",
-                     "write one formula per line");
-        } else if (steps.size() > 1) {
-            drive(p);
-        } else if (!p.values.empty() && is_symbol(p.values[0], "=")) {
-            if (p.values.size() == 2) {
-                compiler_.add_local(steps[0], p.values[1]);
-            } else {
-                form(p, "a = 15 deg");
-            }
-        } else if (steps[0].text == "takes") {
-            if (p.values.size() == 1) {
-                compiler_.about("takes");
-                formula_.takes =
-                    compiler_.program(p.values[0], lang::dimension::kTime).value_or(formula_.takes);
-            } else {
-                form(p, "takes 1 s");
-            }
-        } else if (steps[0].text == "at") {
-            at(p);
-        } else if (steps[0].text == "interpolation") {
-            if (p.values.size() == 1) {
-                way_ = way_of(p.values[0]);
-            } else {
-                form(p, "interpolation catmull_rom");
-            }
-        } else if (steps[0].text == "loop" && p.values.empty()) {
-            formula_.spec.loops = true;
-        } else {
-            e_.unknown(p.name.span, "property of a movement", lang::to_text(p.name),
-                       {"takes", "at", "interpolation", "loop",
-                        (me_.empty() ? "me" : me_) + ".head.flex"});
-        }
-    }
-
-    // When the first keys come, if all that it drives has keys and none at the begin.
-    double first_keys_s() const {
-        double first = std::numeric_limits<double>::infinity();
-        for (const auto* lists : {&formula_.dof_keys, &formula_.path_keys}) {
-            for (const std::vector<motion::FormulaKey>& keys : *lists) {
-                first = std::fmin(first, keys.empty() ? 0 : keys.front().t_s);
-            }
-        }
-        return std::isfinite(first) ? first : 0;
-    }
-
-    void form(const lang::Property& p, const std::string& example) {
-        e_.error("wrong-property", p.span, lang::to_text(p.name) + " is not written like this",
-                 "write `" + example + "`");
-    }
-
-    // at 0.5 s: me.left_elbow.flex = 20 deg; at 0.5 s linear: ...; at 0.5 s raises clap. Further
-    // keys of the same instant follow as properties of their own, behind commas.
-    void at(const lang::Property& p) {
-        key_at_.reset();
-        const auto colon = std::find_if(p.values.begin(), p.values.end(),
-                                        [](const lang::Expr& e) { return is_symbol(e, ":"); });
-        if (colon == p.values.end()) {
-            event(p);
-            return;
-        }
-        const auto before = static_cast<std::size_t>(colon - p.values.begin());
-        if (before < 1 || before > 2 || before + 2 != p.values.size()) {
-            form(p, "at 0.5 s: " + me_ + ".left_elbow.flex = 20 deg");
-            return;
-        }
-        const auto time =
-            e_.constant_number(p.values[0], {}, lang::dimension::kTime, "the time of a key");
-        if (!time) {
-            return;
-        }
-        if (time->value < 0) {
-            e_.error("negative-time", p.values[0].span, "a movement begins at 0 s",
-                     "write a later time");
-            return;
-        }
-        key_at_ = time->value;
-        key_way_ = before == 2 ? way_of(p.values[1]) : way_;
-        // `me.left_elbow.flex = 20 deg` reads as a comparison here.
-        const lang::Expr& value = p.values.back();
-        if (value.kind != lang::ExprKind::kBinary || value.op != lang::Op::kEqual ||
-            value.args.size() != 2 || value.args[0].value.kind != lang::ExprKind::kPath) {
-            form(p, "at 0.5 s: " + me_ + ".left_elbow.flex = 20 deg");
-            return;
-        }
-        key(value.args[0].value.path, value.args[1].value, p.span);
-    }
-
-    // How a key goes to the next one.
-    struct Way {
-        motion::Interpolation interpolation = motion::Interpolation::kCatmullRom;
-        KeyShape shape;
-        Easing easing;
-    };
-
-    Way way_of(const lang::Expr& e) {
-        using motion::Interpolation;
-        Way way;
-        struct Kind {
-            const char* name;
-            Interpolation interpolation;
-            std::vector<const char*> parameters;
-        };
-        static const Kind kKinds[] = {
-            {"bezier", Interpolation::kBezier, {"x1", "y1", "x2", "y2"}},
-            {"cardinal", Interpolation::kCardinal, {"tension"}},
-            {"catmull_rom", Interpolation::kCatmullRom, {}},
-            {"ease", Interpolation::kBezier, {}},
-            {"kochanek_bartels",
-             Interpolation::kKochanekBartels,
-             {"tension", "continuity", "bias"}},
-            {"linear", Interpolation::kLinear, {}},
-            {"step", Interpolation::kStep, {}},
-            {"tcb", Interpolation::kKochanekBartels, {"tension", "continuity", "bias"}},
-        };
-        const std::string name = lang::to_text(e.path);
-        std::vector<std::string> known;
-        const Kind* kind = nullptr;
-        for (const Kind& k : kKinds) {
-            known.emplace_back(k.name);
-            kind = name == k.name ? &k : kind;
-        }
-        if (kind == nullptr) {
-            e_.unknown(e.span, "interpolation", name.empty() ? lang::to_text(e) : name, known);
-            return way;
-        }
-        way.interpolation = kind->interpolation;
-        for (std::size_t i = 0; i < e.args.size(); ++i) {
-            const lang::Argument& a = e.args[i];
-            std::size_t which = i;
-            if (!a.name.text.empty()) {
-                which = static_cast<std::size_t>(
-                    std::find_if(kind->parameters.begin(), kind->parameters.end(),
-                                 [&](const char* p) { return a.name.text == p; }) -
-                    kind->parameters.begin());
-            }
-            if (which >= kind->parameters.size()) {
-                e_.unknown(a.value.span, "parameter of " + name, a.name.text,
-                           {kind->parameters.begin(), kind->parameters.end()});
-                continue;
-            }
-            const std::string parameter = kind->parameters[which];
-            const auto n = e_.constant_number(a.value, {}, lang::dimension::kNone, parameter);
-            if (!n) {
-                continue;
-            }
-            const bool x = parameter[0] == 'x';
-            if (n->value < (x ? 0 : -10) || n->value > (x ? 1 : 10)) {
-                e_.error("out-of-range", a.value.span,
-                         parameter + (x ? " lies between 0 and 1" : " lies between -10 and 10"),
-                         "choose another value");
-                continue;
-            }
-            (parameter == "tension"      ? way.shape.tension
-             : parameter == "continuity" ? way.shape.continuity
-             : parameter == "bias"       ? way.shape.bias
-             : parameter == "x1"         ? way.easing.x1
-             : parameter == "y1"         ? way.easing.y1
-             : parameter == "x2"         ? way.easing.x2
-                                         : way.easing.y2) = n->value;
-        }
-        return way;
-    }
-
-    // One value at key_at_.
-    void key(const lang::Path& target, const lang::Expr& value, lang::Span where) {
-        const auto& steps = target.steps;
-        if (steps[0].text != me_ || steps.size() < 2) {
-            e_.error("wrong-subject", steps[0].span, "a movement moves its actor, " + me_,
-                     "write `" + me_ + "." + steps.back().text + " = ...`");
-            return;
-        }
-        std::string name;
-        for (std::size_t i = 1; i < steps.size(); ++i) {
-            name += (i > 1 ? "." : "") + steps[i].text;
-        }
-        compiler_.about(name);
-        motion::FormulaKey made{.t_s = *key_at_,
-                                .interpolation = key_way_.interpolation,
-                                .shape = key_way_.shape,
-                                .easing = key_way_.easing,
-                                .where = e_.at(where)};
-        compiler_.without_time(true);
-        std::vector<motion::FormulaKey>* keys = nullptr;
-        if (steps.size() == 3 && steps[2].text == "position") {
-            const NamedEnd* end = end_of(steps[1]);
-            const auto programs = end != nullptr ? compiler_.path(value) : std::nullopt;
-            if (programs) {
-                made.value = *programs;
-                keys = path_keys({end->limb, end->space}, target.span);
-            }
-        } else if (const auto program = dof_program(name, value)) {
-            made.value[0] = *program;
-            keys = dof_keys(name, target.span, where);
-        }
-        compiler_.without_time(false);
-        if (keys == nullptr) {
-            return;
-        }
-        const auto after =
-            std::lower_bound(keys->begin(), keys->end(), made.t_s,
-                             [](const motion::FormulaKey& k, double t_s) { return k.t_s < t_s; });
-        if (after != keys->end() && after->t_s == made.t_s) {
-            e_.error("name-twice", target.span, name + " has a key at this time already",
-                     "remove one of them");
-            return;
-        }
-        keys->insert(after, std::move(made));
-    }
-
-    // The list of keys of a DOF; null (and told) where it has a formula.
-    std::vector<motion::FormulaKey>* dof_keys(const std::string& name, lang::Span target,
-                                              lang::Span where) {
-        auto& dofs = formula_.spec.dofs;
-        const auto found = std::find(dofs.begin(), dofs.end(), name);
-        const auto i = static_cast<std::size_t>(found - dofs.begin());
-        if (found == dofs.end()) {
-            dofs.push_back(name);
-            dof_spans_.push_back(target);
-            formula_.dofs.emplace_back();
-            formula_.dof_keys.emplace_back();
-            formula_.dof_where.push_back(e_.at(where));
-        } else if (formula_.dof_keys[i].empty()) {
-            e_.error("name-twice", target, name + " has a formula already",
-                     "write either a formula or keys");
-            return nullptr;
-        }
-        return &formula_.dof_keys[i];
-    }
-    std::vector<motion::FormulaKey>* path_keys(motion::DrivenPath path, lang::Span target) {
-        auto& paths = formula_.spec.paths;
-        const auto found =
-            std::find_if(paths.begin(), paths.end(),
-                         [&](const motion::DrivenPath& other) { return other.limb == path.limb; });
-        const auto i = static_cast<std::size_t>(found - paths.begin());
-        if (found == paths.end()) {
-            paths.push_back(path);
-            formula_.paths.emplace_back();
-            formula_.path_keys.emplace_back();
-            formula_.path_where.push_back(e_.at(target));
-        } else if (formula_.path_keys[i].empty()) {
-            e_.error("name-twice", target, "it has a way already",
-                     "write either a formula or keys");
-            return nullptr;
-        }
-        return &formula_.path_keys[i];
-    }
-
-    // DOFs of other figures: what the formula gives says whether they turn or slide.
-    std::optional<ProgramIndex> dof_program(const std::string& name, const lang::Expr& value) {
-        const figure::DofIndex known = mannequin_dofs().find(name);
-        if (known.valid()) {
-            const bool slides = mannequin_dofs().dofs[known.value].kind == figure::DofKind::kSlide;
-            return compiler_.program(value,
-                                     slides ? lang::dimension::kLength : lang::dimension::kAngle);
-        }
-        return compiler_.program_of(value, lang::dimension::kAngle, lang::dimension::kLength);
-    }
-
-    const NamedEnd* end_of(const lang::Name& end) {
-        std::vector<std::string> known;
-        for (const NamedEnd& n : kEnds) {
-            if (end.text == n.name) {
-                return &n;
-            }
-            known.emplace_back(n.name);
-        }
-        e_.unknown(end.span, "hand or foot", end.text, known);
-        return nullptr;
-    }
-
-    // at 0.5 s raises clap
-    void event(const lang::Property& p) {
-        if (p.values.size() != 3 || !is_word(p.values[1], "raises") ||
-            p.values[2].kind != lang::ExprKind::kPath || p.values[2].path.steps.size() != 1) {
-            form(p, "at 0.5 s raises clap");
-            return;
-        }
-        const auto at =
-            e_.constant_number(p.values[0], {}, lang::dimension::kTime, "the time of an event");
-        if (at && at->value < 0) {
-            e_.error("negative-time", p.values[0].span, "a movement begins at 0 s",
-                     "write a later time");
-        } else if (at) {
-            formula_.spec.events.push_back(
-                {at->value, p.values[2].path.steps[0].text, Limb::kPelvis});
-        }
-    }
-
-    // me.head.flex = ..., me.right_hand.position = (...) m in chest
-    void drive(const lang::Property& p) {
-        const auto& steps = p.name.steps;
-        if (key_at_) {
-            if (p.values.size() == 2 && is_symbol(p.values[0], "=")) {
-                key(p.name, p.values[1], p.span);
-            } else {
-                form(p, lang::to_text(p.name) + " = 20 deg");
-            }
-            return;
-        }
-        if (steps[0].text != me_) {
-            e_.error("wrong-subject", steps[0].span,
-                     "a movement moves its actor, " + (me_.empty() ? "its first parameter" : me_),
-                     "write `" + me_ + "." + steps.back().text + " = ...`");
-            return;
-        }
-        if (p.values.size() < 2 || !is_symbol(p.values[0], "=")) {
-            form(p, lang::to_text(p.name) + " = 15 deg * sin(2*pi*t/1 s)");
-            return;
-        }
-        std::string name;
-        for (std::size_t i = 1; i < steps.size(); ++i) {
-            name += (i > 1 ? "." : "") + steps[i].text;
-        }
-        compiler_.about(name);
-        if (steps.size() == 3 && steps[2].text == "position") {
-            path(p, steps[1]);
-            return;
-        }
-        if (p.values.size() != 2) {
-            form(p, lang::to_text(p.name) + " = 15 deg * sin(2*pi*t/1 s)");
-            return;
-        }
-        auto& dofs = formula_.spec.dofs;
-        if (std::find(dofs.begin(), dofs.end(), name) != dofs.end()) {
-            e_.error("name-twice", p.name.span, name + " has a formula already",
-                     "add the two in one formula");
-            return;
-        }
-        if (const auto program = dof_program(name, p.values[1])) {
-            dofs.push_back(name);
-            dof_spans_.push_back(p.name.span);
-            formula_.dofs.push_back(*program);
-            formula_.dof_keys.emplace_back();
-            formula_.dof_where.push_back(e_.at(p.span));
-        }
-    }
-
-    void path(const lang::Property& p, const lang::Name& end) {
-        const NamedEnd* found = end_of(end);
-        if (found == nullptr) {
-            return;
-        }
-        motion::DrivenPath driven{found->limb, found->space};
-        const bool hand = found->limb == Limb::kLeftArm || found->limb == Limb::kRightArm;
-        if (p.values.size() == 4 && is_word(p.values[2], "in") &&
-            p.values[3].kind == lang::ExprKind::kPath) {
-            const std::string space = lang::to_text(p.values[3]);
-            if (space == "world") {
-                driven.space = PathSpace::kWorld;
-            } else if (space == "start") {
-                driven.space = PathSpace::kStart;
-            } else if (space == "chest" && hand) {
-                driven.space = PathSpace::kChest;
-            } else {
-                e_.unknown(p.values[3].span, "space", space,
-                           hand ? std::vector<std::string>{"chest", "start", "world"}
-                                : std::vector<std::string>{"start", "world"});
-                return;
-            }
-        } else if (p.values.size() != 2) {
-            form(p, lang::to_text(p.name) + " = (0.2, 0.3, 0.4) m in chest");
-            return;
-        }
-        auto& paths = formula_.spec.paths;
-        if (std::any_of(paths.begin(), paths.end(), [&](const motion::DrivenPath& other) {
-                return other.limb == driven.limb;
-            })) {
-            e_.error("name-twice", p.name.span, end.text + " has a way already",
-                     "write one way for it");
-            return;
-        }
-        if (const auto programs = compiler_.path(p.values[1])) {
-            paths.push_back(driven);
-            formula_.paths.push_back(*programs);
-            formula_.path_keys.emplace_back();
-            formula_.path_where.push_back(e_.at(p.span));
-        }
-    }
-
-    Elaboration& e_;
-    const lang::Block& block_;
-    motion::OwnSignature signature_;
-    motion::FormulaMovement formula_;
-    FormulaCompiler compiler_;
-    std::string me_;
-    std::vector<lang::Span> dof_spans_;
-    std::optional<double> key_at_;  // while keys of one instant are read
-    Way way_, key_way_;
-};
 
 void OwnDefinition::limbs_of_definition(motion::OwnSignature& signature,
                                         const motion::PosedSpec& spec) {
@@ -673,6 +196,41 @@ const OwnDefinition& Elaboration::define_movement(const lang::Block& block) {
     return kept;
 }
 
+// A clip of somebody else: of no humanoid, or of joints that a creature does not have.
+void Elaboration::check_clip_call(const OwnDefinition& definition, const motion::BoundCall& call,
+                                  lang::Span where) {
+    if (!call.subject.actor.valid()) {
+        return;
+    }
+    const stage::Actor& actor = scene.play.cast.actors[call.subject.actor.value];
+    const std::string& clip = definition.block->name.text;
+    if (actor.humanoid()) {
+        static const figure::Figure figure = figure::make_mannequin(1.75);
+        if (definition.clip->plays_on(figure)) {
+            return;
+        }
+        const bool no_skeleton = definition.no_humanoid.empty();
+        const Diagnostic* why = no_skeleton ? nullptr : &definition.no_humanoid.front();
+        error("nothing-moves", where,
+              why == nullptr ? "the clip " + clip + " moves nothing that a humanoid has"
+                             : "the clip " + clip + " is of no humanoid: " + why->element + ": " +
+                                   why->message,
+              "let a `creature` with joints of its names do it; look at them with `puppetri clip`");
+        return;
+    }
+    const figure::Figure figure = actor.character->moved_figure();
+    if (!definition.clip->plays_on(figure)) {
+        std::string some;
+        for (std::size_t i = 1; i < figure.skeleton.joints.size() && i <= 6; ++i) {
+            some += (i > 1 ? ", " : "") + figure.skeleton.joints[i].name;
+        }
+        error("nothing-moves", where,
+              "the clip " + clip + " moves no joint of " + actor.name + ", a creature",
+              "its joints are " + some + (figure.skeleton.joints.size() > 7 ? ", ..." : "") +
+                  "; name the tracks so");
+    }
+}
+
 // What can be wrong with one call: DOFs that the figure lacks, poles, values out of range.
 void Elaboration::check_own_call(const OwnDefinition& definition, const motion::BoundCall& call,
                                  lang::Span where) {
@@ -684,6 +242,10 @@ void Elaboration::check_own_call(const OwnDefinition& definition, const motion::
         if (!actor.humanoid()) {
             dofs = &actor.character->dofs;
         }
+    }
+    if (definition.clip != nullptr) {
+        check_clip_call(definition, call, where);
+        return;
     }
     bool missing = false;
     for (std::size_t i = 0; i < definition.dofs.size(); ++i) {

@@ -71,6 +71,17 @@ Vec3 joint_at(const stage::Performance& p, const char* name, double t_s) {
     return world[skeleton.find(name).value].translation;
 }
 
+// A joint in the space of another.
+Vec3 joint_in(const stage::Performance& p, const char* space, const char* name, double t_s) {
+    figure::Pose pose;
+    p.pose({0}, SimTime{static_cast<std::int64_t>(t_s * kTicksPerSecond)}, pose);
+    const figure::Skeleton& skeleton = *p.actors()[0].skeleton;
+    std::vector<Transform> world(skeleton.joints.size());
+    to_model_space(skeleton, pose, world);
+    return inverse(world[skeleton.find(space).value]) *
+           world[skeleton.find(name).value].translation;
+}
+
 const char* const kNod =
     "movement m(me: actor, deep = 15 deg) { takes 2 s; me.head.flex = deep * sin(2*pi*t/1 s) }";
 
@@ -139,14 +150,7 @@ TEST_CASE("a hand goes along its path before the chest and in the world [oracle]
                             "m(radius: 8 cm)");
     const Performed p = performed(chest);
     for (double t = 0.5; t < 2; t += 0.1) {
-        figure::Pose pose;
-        p.performance->pose({0}, SimTime{static_cast<std::int64_t>((1 + t) * kTicksPerSecond)},
-                            pose);
-        const figure::Skeleton& skeleton = *p.performance->actors()[0].skeleton;
-        std::vector<Transform> world(skeleton.joints.size());
-        to_model_space(skeleton, pose, world);
-        const Vec3 hand = inverse(world[skeleton.find("upperChest").value]) *
-                          world[skeleton.find("leftHand").value].translation;
+        const Vec3 hand = joint_in(*p.performance, "upperChest", "leftHand", 1 + t);
         const double a = kPi * t;
         CHECK(length(hand - Vec3{0.25 + 0.08 * puppetri::cos(a), 0.1 + 0.08 * puppetri::sin(a),
                                  0.35}) < 1e-6);
@@ -350,6 +354,98 @@ TEST_CASE("keys without one at the begin are a pose to be reached when the first
     CHECK(fastest > 1.2 * (radians(100) - start) / 2);
 }
 
+TEST_CASE("Hermite keys have the rates that they say, of joints and of hands [oracle]") {
+    // Between two keys the cubic that has both values and both rates: with h = 1 s, rates m and n,
+    // f(u) = a (1 - 3u^2 + 2u^3) + m (u - 2u^2 + u^3) + b (3u^2 - 2u^3) + n (u^3 - u^2).
+    const auto cubic = [](double a, double m, double b, double n, double u) {
+        return a * (1 - 3 * u * u + 2 * u * u * u) + m * (u - 2 * u * u + u * u * u) +
+               b * (3 * u * u - 2 * u * u * u) + n * (u * u * u - u * u);
+    };
+    const Scene scene = one(R"(keyframes m(me: actor) {
+  takes 2 s
+  interpolation hermite
+  at 0 s: me.left_elbow.flex = 30 deg
+  at 1 s: me.left_elbow.flex = 50 deg rate(in: -40 deg/s, out: 80 deg/s)
+  at 2 s: me.left_elbow.flex = 60 deg rate(-20 deg/s)
+  at 0 s: me.right_hand.position = (-0.2, -0.1, 0.3) m rate((0, 0.4, 0) m/s)
+  at 1 s: me.right_hand.position = (-0.2, 0, 0.35) m rate((0.1, 0, 0) m/s)
+  at 2 s: me.right_hand.position = (-0.2, -0.1, 0.3) m
+})",
+                            "m()");
+    const Performed p = performed(scene);
+    for (double t = 0.5; t < 2; t += 0.125) {
+        const double expected = t < 1 ? cubic(30, 0, 50, -40, t) : cubic(50, 80, 60, -20, t - 1);
+        CHECK(dof_value(*p.performance, "left_elbow.flex", 1 + t) * 180 / kPi ==
+              doctest::Approx(expected).epsilon(1e-6));
+        const Vec3 hand{t < 1 ? cubic(-0.2, 0, -0.2, 0.1, t) : cubic(-0.2, 0.1, -0.2, 0, t - 1),
+                        t < 1 ? cubic(-0.1, 0.4, 0, 0, t) : cubic(0, 0, -0.1, 0, t - 1),
+                        t < 1 ? cubic(0.3, 0, 0.35, 0, t) : cubic(0.35, 0, 0.3, 0, t - 1)};
+        const Vec3 chest = joint_in(*p.performance, "upperChest", "rightHand", 1 + t);
+        CHECK(length(chest - hand) < 1e-6);
+    }
+    // A rate may read parameters, and is per second of the movement's own time.
+    const Scene with = one(R"(keyframes m(me: actor, fast: real = 60) {
+  takes 1 s
+  interpolation hermite
+  at 0 s: me.left_elbow.flex = 30 deg rate(fast*1 deg/1 s)
+  at 1 s: me.left_elbow.flex = 30 deg
+})",
+                           "m(fast: 120)");
+    const Performed q = performed(with);
+    CHECK(dof_value(*q.performance, "left_elbow.flex", 1.5) * 180 / kPi ==
+          doctest::Approx(cubic(30, 120, 30, 0, 0.5)).epsilon(1e-6));
+}
+
+TEST_CASE("a contact holds a foot that keys move to one place on the floor [law]") {
+    const char* const keys = R"(keyframes m(me: actor) {
+  takes 2 s
+  CONTACT
+  at 0 s: me.pelvis.position = (0, 0, 0) m
+  at 1 s: me.pelvis.position = (0, -0.06, 0.03) m
+  at 2 s: me.pelvis.position = (0, 0, 0) m
+  at 0 s: me.right_foot.position = (-0.09, 0, 0) m in start
+  at 0.5 s: me.right_foot.position = (-0.09, 0.12, 0.1) m
+  at 1 s: me.right_foot.position = (-0.1, 0.02, 0.1) m
+  at 1.6 s: me.right_foot.position = (-0.12, 0.01, 0.14) m
+  at 2 s: me.right_foot.position = (-0.09, 0, 0.1) m
+})";
+    const auto slide = [&](const std::string& contact) {
+        std::string text = keys;
+        text.replace(text.find("CONTACT"), 7, contact);
+        const Scene scene = one(text, "m()");
+        const Performed p = performed(scene);
+        const Vec3 at = joint_at(*p.performance, "rightFoot", 2.05);
+        double worst = 0;
+        for (double t = 1.0; t <= 1.6; t += 0.05) {
+            worst = std::fmax(worst, length(joint_at(*p.performance, "rightFoot", 1 + t) - at));
+        }
+        return worst;
+    };
+    CHECK(slide("contact right_foot 1 s .. 1.6 s") < 1e-9);
+    CHECK(slide("contact left_foot 1 s .. 1.6 s") > 0.02);
+}
+
+TEST_CASE("what loops goes round in a place that gives it more time [law]") {
+    MemoryFiles files;
+    files.add("scene.pup",
+              "language 1\nscene \"s\"\nuntil 8 s\ncast { ana: mannequin }\n"
+              "movement m(me: actor) {\n takes 1 s\n loop\n"
+              " me.head.flex = 15 deg * sin(2*pi*t/1 s)\n at 0.25 s raises nodded\n}\n"
+              "place a does ana.m() takes 5.2 s tokens 1\nend { a }\n");
+    const Scene scene = must(load(files, "scene.pup"));
+    const Performed p = performed(scene);
+    // Five whole rounds are nearest: each 1.04 s long.
+    for (double t = 0.6; t < 5.1; t += 0.13) {
+        CHECK(dof_value(*p.performance, "head.flex", t) ==
+              doctest::Approx(radians(15) * puppetri::sin(2 * kPi * t / 1.04)).epsilon(1e-5));
+    }
+    int nods = 0;
+    for (const stage::StageEvent& e : p.performance->events()) {
+        nods += e.name == "nodded" ? 1 : 0;
+    }
+    CHECK(nods == 5);
+}
+
 TEST_CASE("wrong keyframes are told with place and remedy [hostile]") {
     const auto keys = [](const char* body) {
         return std::string("keyframes m(me: actor) {\n takes 1 s\n") + body + "\n}";
@@ -364,4 +460,25 @@ TEST_CASE("wrong keyframes are told with place and remedy [hostile]") {
     refuses(keys("interpolation tcb(tension: 99)\nat 0 s: me.head.flex = 1 deg"), "out-of-range");
     refuses(keys("me.head.flex = 1 deg\nat 0 s: me.head.flex = 1 deg"), "name-twice");
     refuses(keys("at 0 s: you.head.flex = 1 deg"), "wrong-subject");
+    refuses(keys("at 0 s: me.head.flex = 1 deg rate(1 deg/s)\nat 1 s: me.head.flex = 0 deg"),
+            "rate-unused");
+    const auto hermite = [&](const char* key) {
+        return keys((std::string("interpolation hermite\nat 0 s: ") + key +
+                     "\nat 1 s: me.head.flex = 0 deg")
+                        .c_str());
+    };
+    refuses(hermite("me.head.flex = 1 deg rate(1 deg)"), "wrong-unit");
+    refuses(hermite("me.head.flex = 1 deg rate(before: 1 deg/s)"), "unknown-name");
+    refuses(hermite("me.head.flex = 1 deg rate(in: 1 deg/s, in: 2 deg/s)"), "name-twice");
+    refuses(hermite("me.head.flex = 1 deg rate()"), "missing-argument");
+    refuses(hermite("me.head.flex = 1 deg slowly"), "wrong-property");
+    refuses(hermite("me.left_hand.position = (0, 0, 0) m rate((0, 1, 0) m)"), "wrong-unit");
+    refuses(hermite("me.left_hand.position = (0, 0, 0) m in moon"), "unknown-name");
+    refuses(keys("contact left_foot 0 s .. 2 s\nat 0 s: me.head.flex = 1 deg"), "key-after-end");
+    refuses(keys("contact left_foot 0.5 s .. 0.5 s\nat 0 s: me.head.flex = 1 deg"), "out-of-range");
+    refuses(keys("contact left_hand 0 s .. 0.5 s\nat 0 s: me.head.flex = 1 deg"), "unknown-name");
+    refuses(keys("contact left_foot\nat 0 s: me.head.flex = 1 deg"), "wrong-property");
+    refuses(keys("contact left_foot 0 s .. 0.5 s\ncontact left_foot 0.4 s .. 0.6 s\n"
+                 "at 0 s: me.head.flex = 1 deg"),
+            "name-twice");
 }

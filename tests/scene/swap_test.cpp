@@ -87,7 +87,8 @@ class ArmClip final : public Assets {
             clip.rotations[1].keys.push_back(key);
         }
         LoadedClips loaded;
-        loaded.clips.push_back(std::move(clip));
+        loaded.raw.push_back(clip);
+        loaded.humanoid.push_back(std::move(clip));
         return loaded;
     }
 };

@@ -41,14 +41,17 @@ struct ClipLayer {
     double fade_in_s = 0, fade_out_s = 0;  // eased by a cubic
 };
 
-// The layers, the lowest first, over the pose that is there.
+// The layers, the lowest first, over the pose that is there. `dofs` of the figure: tracks of
+// degrees of freedom turn the joints that they are of, on top of what lower layers did to these;
+// null: they move nothing.
 void apply_layers(std::span<const ClipLayer> layers, const figure::Skeleton& skeleton, double t_s,
-                  figure::Pose& pose);
+                  figure::Pose& pose, const figure::DofSet* dofs = nullptr);
 
 // The stack as one clip of that duration, with keys at that rate, linear. A target that no override
-// layer has starts from the skeleton's rest pose, a degree of freedom from 0.
+// layer has starts from the skeleton's rest pose, a degree of freedom from 0. A joint for which
+// there are tracks of both kinds gets a track of rotation, if `dofs` are given.
 Clip flattened(std::span<const ClipLayer> layers, const figure::Skeleton& skeleton,
-               double duration_s, double rate_hz);
+               double duration_s, double rate_hz, const figure::DofSet* dofs = nullptr);
 
 // The differences of a clip from its own value at reference_s: what an additive layer plays.
 Clip to_additive(const Clip& clip, double reference_s);

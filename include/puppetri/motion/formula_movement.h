@@ -44,6 +44,7 @@ struct FormulaDanger {
 struct FormulaKey {
     double t_s = 0;
     std::array<ProgramIndex, 3> value;
+    std::array<ProgramIndex, 3> in, out;  // kHermite: rates per second; not valid: 0
     Interpolation interpolation = Interpolation::kCatmullRom;
     KeyShape shape;
     Easing easing;
@@ -61,7 +62,7 @@ struct FormulaMovement {
     // By DOF and by path, ordered by time; where there are keys, the formula above is not valid.
     std::vector<std::vector<FormulaKey>> dof_keys, path_keys;
     std::vector<FormulaDanger> dangers;
-    std::vector<SourceSpan> dof_where, path_where;
+    std::vector<SourceSpan> dof_where, path_where, contact_where;
 };
 
 class FormulaMaker final : public MovementMaker {
@@ -79,9 +80,9 @@ class FormulaMaker final : public MovementMaker {
     Takes takes(const Arguments& arguments) const;
 
     // All that is wrong with a call before anything moves: poles ("formula-pole"), values that are
-    // no numbers ("not-a-number"), keys after the end ("key-after-end"), values out of a DOF's
-    // range ("out-of-range", a warning). Inputs that are places of things are taken as at (1, 1, 1)
-    // m, once more at (0.3, 0.2, -1) m. Cost    about a millisecond.
+    // no numbers ("not-a-number"), keys and contacts after the end ("key-after-end"), values out of
+    // a DOF's range ("out-of-range", a warning). Inputs that are places of things are taken as at
+    // (1, 1, 1) m, once more at (0.3, 0.2, -1) m. Cost    about a millisecond.
     Diagnostics check(const Arguments& arguments, const figure::DofSet& dofs) const;
 
     const FormulaMovement& formula() const { return *formula_; }

@@ -41,11 +41,14 @@ struct FootContact {
 struct PosedSpec {
     std::string name;  // of the movement, for warnings
     double duration_s = 1;
-    bool loops = false;               // goes on beyond the duration instead of resting at its end
+    // Goes on from its beginning after its end, its travel too. A place that gives it more time
+    // gets as many whole rounds as come nearest to its own pace.
+    bool loops = false;
     std::vector<std::string> dofs;    // "head.flex": names of the figure's DOFs
     std::vector<std::string> joints;  // whole rotations of joints, by name in the skeleton
     std::vector<DrivenPath> paths;
-    bool travels = false;  // `joints` has a travel of the root, see PoseFrame
+    std::vector<std::string> places;  // translations of joints, of figures that are no humanoids
+    bool travels = false;             // `joints` has a travel of the root, see PoseFrame
     std::vector<FootContact> contacts;
     struct Event {
         double at_s = 0;
@@ -70,7 +73,9 @@ struct PoseFrame {
     std::span<Quat> joints;
     std::span<Vec3> paths;  // metres; of a hand the wrist, of a foot the sole below the ankle, of
                             // the pelvis its way from where it stands
-    Transform start_from_pelvis;  // where spec.travels: the hips in start space
+    Transform start_from_pelvis;  // where spec.travels: the hips in start space; of a creature, how
+                                  // far it has come
+    std::span<Vec3> places = {};  // parent_from_joint, metres
 };
 
 class PoseSource {

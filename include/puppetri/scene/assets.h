@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/figure/skeleton.h"
 #include "puppetri/motion/clip.h"
 
 namespace puppetri::figure {
@@ -42,12 +43,18 @@ struct ClipRequest {
     double scale = 0;  // a length of the file times this is metres; 0: the format's own unit
 };
 
-// Tracks of joints are those of the normalised humanoid (figure/mannequin.h), whatever skeleton the
-// file has; DOFs as the file names them.
+// The clips of a file, in the two forms in which figures perform them.
 struct LoadedClips {
-    std::vector<motion::Clip> clips;
-    double hips_height_m =
-        0;  // above the soles in the rest pose of the file's figure; 0: no figure
+    // For humanoids: tracks of joints are those of the normalised humanoid (figure/mannequin.h),
+    // whatever skeleton the file has; DOFs as the file names them. Empty where the skeleton is no
+    // humanoid's: no_humanoid says why.
+    std::vector<motion::Clip> humanoid;
+    double hips_height_m = 0;  // of the file's figure at rest, above the soles; 0: no figure
+    Diagnostics no_humanoid;
+    // For creatures: as the file has them, with its skeleton; that is empty where the file has
+    // none and its tracks go by the names of whatever figure plays them.
+    std::vector<motion::Clip> raw;
+    figure::Skeleton skeleton;
     Diagnostics notes;
 };
 
