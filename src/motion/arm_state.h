@@ -43,8 +43,9 @@ struct ArmOffsets {
         const ControlsRate rate = rate_between(first, later, kMoment_s);
         ArmOffsets offsets;
         for (int i = 0; i < 2; ++i) {
-            offsets.arms[i] = InertialArm(chest_context.now.arms[i], chest_context.rate.arms[i],
-                                          first.arms[i], rate.arms[i], blend_s);
+            offsets.arms[i] =
+                InertialArm(chest_context.figure, static_cast<Side>(i), chest_context.now.arms[i],
+                            chest_context.rate.arms[i], first.arms[i], rate.arms[i], blend_s);
         }
         return offsets;
     }
@@ -74,7 +75,8 @@ inline ArmOffsets fading_fingers(const MotionContext& chest_context, const Contr
         ControlsRate::Arm rate = chest_context.rate.arms[i];
         now.chest_from_hand = own.arms[i].chest_from_hand;
         rate.hand_velocity_chest = rate.hand_angular_chest = {};
-        offsets.arms[i] = InertialArm(now, rate, own.arms[i], {}, blend_s);
+        offsets.arms[i] = InertialArm(chest_context.figure, static_cast<Side>(i), now, rate,
+                                      own.arms[i], {}, blend_s);
     }
     return offsets;
 }

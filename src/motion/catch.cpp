@@ -199,7 +199,7 @@ class Catch final : public Movement {
         fitted.duration = duration;
         base_ = make_idle(
             fitted, {.limbs = without(kAllLimbs, kBothArms), .duration_s = duration.seconds()});
-        arms_ = make_carry(fitted, {.radius_m = spec.radius_m, .held = true});
+        arms_ = make_carry(fitted, {.radius_m = spec.radius_m, .held = spec.held});
         phases = base_->phases;
         events.insert(events.end(), base_->events.begin(), base_->events.end());
         const double h = context.figure.height_m;

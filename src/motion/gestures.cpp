@@ -32,9 +32,10 @@ class Bow final : public PoseSource {
         const double u = stays(t_s, 0, 0.42 * duration_s_, duration_s_, 0.46 * duration_s_);
         const double bend = deep_ * u;
         // Hips, spine, chest, neck; the hips go back so that the weight stays over the feet.
-        constexpr double kShare[] = {0.5, 0.2, 0.2, 0.1};
+        // Who sits has bent its hips already.
+        const double share[] = {scale_ > 0 ? 0.5 : 0.2, 0.2, 0.2, 0.1};
         for (std::size_t i = 0; i < 4; ++i) {
-            frame.dofs[i] = kShare[i] * bend;
+            frame.dofs[i] = share[i] * bend;
         }
         frame.paths[0] = Vec3{0, -0.015 * u, -0.17 * bend} * scale_;
     }
@@ -81,7 +82,7 @@ class Eat final : public PoseSource {
     }
     void sample(double t_s, PoseFrame& frame) const override {
         const double t = t_s - kBite_s * std::floor(t_s / kBite_s);
-        const double up = stays(t, 0.4, 0.8, 2.7, 1.0);
+        const double up = stays(t, 0.3, 0.95, 2.75, 1.1);
         // The way bends outward and ahead, as the elbow does.
         const double out = 4 * up * (1 - up);
         frame.paths[0] = lerp(plate_, mouth_, up) + Vec3{0.03 * s_, 0, 0.05} * out;

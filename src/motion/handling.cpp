@@ -30,6 +30,9 @@ struct Bend {
     Vec3 pelvis{0, -0.36, -0.16};  // of a figure of 1.75 m
 };
 
+// Who sits has bent its hips already, and bends over the seat.
+constexpr double kSeated = 0.35;
+
 class Stoop final : public PoseSource {
  public:
     Stoop(double part, double scale, double grasp_s, double end_s)
@@ -39,7 +42,7 @@ class Stoop final : public PoseSource {
         const double u = part_ * smooth_rise(t_s, grasp_s_ - kStill_s) *
                          smooth_rise(end_s_ - t_s, end_s_ - grasp_s_ - kStill_s);
         const Bend bend;
-        frame.dofs[0] = bend.hips_rad * u;
+        frame.dofs[0] = bend.hips_rad * u * (scale_ > 0 ? 1 : kSeated);
         frame.dofs[1] = bend.spine_rad * u;
         frame.dofs[2] = bend.chest_rad * u;
         frame.dofs[3] = bend.upper_rad * u;
@@ -53,8 +56,10 @@ class Stoop final : public PoseSource {
 
 class Take final : public Movement {
  public:
-    Take(const MotionContext& given, const TakeSpec& spec, Quat hands_world)
+    // `then`: where the trunk is about when the hands close.
+    Take(const MotionContext& given, const TakeSpec& spec, Quat hands_world, const Controls& then)
         : figure_(given.figure), spec_(spec), world_from_hands_{hands_world, spec.ball_world} {
+        grasped_ = inverse(world_from_chest(figure_, then)) * world_from_hands_;
         const MotionContext context = arms_in_chest_space(given);
         limbs = kBothArms;
         duration = duration_of(context, spec.grasps_s + spec.brings_s);
@@ -72,17 +77,40 @@ class Take final : public Movement {
         const Transform there = inverse(world_from_chest(figure_, out)) * world_from_hands_;
         const double closing = smooth_rise(t_s - 0.45 * spec_.grasps_s, 0.55 * spec_.grasps_s);
         const double brought = smooth_rise(t_s - spec_.grasps_s, spec_.brings_s);
+        // Held, it comes along with the chest: one that stayed behind would stretch the arms.
+        const double along = smooth_rise(t_s - spec_.grasps_s, 0.25);
+        const Transform held{slerp(there.rotation, grasped_.rotation, along),
+                             lerp(there.translation, grasped_.translation, along)};
         // Over the knees, not through them.
         const Vec3 ahead = Vec3{0, 0, 0.07} * (4 * brought * (1 - brought));
         lay_hands(figure_,
-                  {slerp(there.rotation, carried_.rotation, brought),
-                   lerp(there.translation, carried_.translation, brought) + ahead},
+                  {slerp(held.rotation, carried_.rotation, brought),
+                   lerp(held.translation, carried_.translation, brought) + ahead},
                   spec_.radius_m, kOpen_m * (1 - closing), out);
+        keep_in_reach(smooth_rise(t_s - 0.3 * spec_.grasps_s, 0.7 * spec_.grasps_s), out);
+    }
+
+    // A ball is out of reach until the trunk has bent: hands that follow it would stretch the arms
+    // at once, and bend the elbows at once when it comes near. They come as near as bent arms let
+    // them, and straighten only when it is there.
+    void keep_in_reach(double there, Controls& out) const {
+        const double most = lerp(0.84, 0.985, there), soft = lerp(0.10, 0.02, there);
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            const figure::Arm& arm = figure_.arms[index_of(side)];
+            const double whole = arm.upper_m + arm.fore_m;
+            const Vec3 shoulder = shoulder_chest(figure_, side);
+            Vec3& hand = out.arms[index_of(side)].chest_from_hand.translation;
+            const double far = length(hand - shoulder) / whole, over = far - (most - soft);
+            if (over > 0) {
+                const double near = over < 2 * soft ? far - over * over / (4 * soft) : most;
+                hand = shoulder + (hand - shoulder) * (near / far);
+            }
+        }
     }
 
     const figure::Figure& figure_;
     TakeSpec spec_;
-    Transform world_from_hands_, carried_;
+    Transform world_from_hands_, grasped_, carried_;
     ArmOffsets offsets_;
 };
 
@@ -182,13 +210,26 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
         body->sample(grasp_s, low);
         reach = reach_to(figure, low, spec.ball_world, spec.radius_m);
     }
-    const Quat hands = hands_at(figure, low, spec.ball_world, spec.radius_m, 0);
+    Vec3 at_world = spec.ball_world;
+    if (reach > kFarthest) {  // the hands go towards where it might lie, before the feet
+        const Vec3 feet = (low.legs[0].ankle_world + low.legs[1].ankle_world) * 0.5;
+        const Vec3 before =
+            feet + rotate(about_y(heading_of(low.pelvis.rotation_world)),
+                          {0, spec.radius_m - figure.ankle_height_m, 0.23 * figure.height_m});
+        const Vec3 shoulders =
+            world_from_chest(figure, low) *
+            ((shoulder_chest(figure, Side::kLeft) + shoulder_chest(figure, Side::kRight)) * 0.5);
+        const double arm = figure.arms[0].upper_m + figure.arms[0].fore_m,
+                     far = length(before - shoulders);
+        at_world = shoulders + (before - shoulders) * std::fmin(1, 0.8 * arm / far);
+    }
+    const Quat hands = hands_at(figure, low, at_world, spec.radius_m, 0);
     auto arms = std::make_shared<Take>(context,
                                        TakeSpec{.radius_m = spec.radius_m,
-                                                .ball_world = spec.ball_world,
+                                                .ball_world = at_world,
                                                 .grasps_s = grasp_s,
                                                 .brings_s = 0.92 * (own_s - grasp_s)},
-                                       hands);
+                                       hands, low);
     arms->events = {{to_time(grasp_s), "grasp", Limb::kPelvis}};
     PickUp made;
     made.movement = side_by_side(std::move(body), std::move(arms));
@@ -217,7 +258,8 @@ MovementPtr make_give(const MotionContext& context, const GiveSpec& spec) {
 MovementPtr make_take(const MotionContext& context, const TakeSpec& spec) {
     return std::make_shared<Take>(
         context, spec,
-        hands_at(context.figure, context.now, spec.ball_world, spec.radius_m, spec.roll_rad));
+        hands_at(context.figure, context.now, spec.ball_world, spec.radius_m, spec.roll_rad),
+        context.now);
 }
 
 }  // namespace puppetri::motion

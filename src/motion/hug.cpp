@@ -46,7 +46,7 @@ class Arms final : public Movement {
                                                               curve(&Vec3::z)};
         }
         offsets_ = ArmOffsets::make(
-            context, [this](double t, Controls& out) { own(t, out); }, 0.55);
+            context, [this](double t, Controls& out) { own(t, out); }, 0.45);
     }
     void sample(double t_s, Controls& out) const override {
         own(t_s, out);
@@ -112,7 +112,10 @@ Hug make_hug(const MotionContext& context, const HugSpec& spec) {
     const double apart = length(Vec3{way.x, 0, way.z});
     const double usual = hug_distance_m(0.5 * (context.figure.height_m + spec.other.height_m));
     Hug made;
-    made.near = apart > 0.75 * usual && apart < 1.3 * usual;
+    const double aside = turn_between(
+        heading_of(way), heading_of(pelvis_over_feet(context.figure, context.now).rotation_world));
+    constexpr double kBefore_rad = radians(40);
+    made.near = apart > 0.75 * usual && apart < 1.3 * usual && std::fabs(aside) < kBefore_rad;
     const PosedSpec posed{.name = "hug",
                           .duration_s = kHug_s,
                           .dofs = {"hips.flex", "chest.flex", "head.side"},

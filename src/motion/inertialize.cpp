@@ -4,6 +4,7 @@
 
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
+#include "puppetri/motion/gaze.h"
 
 namespace puppetri::motion {
 
@@ -75,18 +76,54 @@ void InertialBody::apply(double t_s, BodyControl& body) const {
     body.breath += breath_.at(t_s);
 }
 
-InertialArm::InertialArm(const ArmControl& now, const ControlsRate::Arm& rate,
-                         const ArmControl& own, const ControlsRate::Arm& own_rate, double blend_s)
-    : position_(now.chest_from_hand.translation - own.chest_from_hand.translation,
-                rate.hand_velocity_chest - own_rate.hand_velocity_chest, blend_s),
-      rotation_(of_rotation(now.chest_from_hand.rotation, rate.hand_angular_chest,
-                            own.chest_from_hand.rotation, own_rate.hand_angular_chest, blend_s)),
+InertialArm::Line InertialArm::line_to(Vec3 hand_chest) const {
+    const Vec3 way = hand_chest - shoulder_chest_;
+    const double far = length(way);
+    // No arm points across the body to the other shoulder, where the turn would be undefined.
+    return {shortest_arc(outward_, far > 0 ? way * (1 / far) : outward_, {0, 1, 0}), far};
+}
+
+InertialArm::InertialArm(const figure::Figure& figure, Side side, const ArmControl& now,
+                         const ControlsRate::Arm& rate, const ArmControl& own,
+                         const ControlsRate::Arm& own_rate, double blend_s)
+    : shoulder_chest_(shoulder_chest(figure, side)),
+      outward_{side == Side::kLeft ? 1.0 : -1.0, 0, 0},
       swivel_(now.swivel_rad - own.swivel_rad, rate.swivel_rad_s - own_rate.swivel_rad_s, blend_s),
       relaxed_(now.relaxed - own.relaxed, rate.relaxed_per_s - own_rate.relaxed_per_s, blend_s),
       spread_(now.spread - own.spread, rate.spread_per_s - own_rate.spread_per_s, blend_s),
       grip_(now.grip - own.grip, rate.grip_per_s - own_rate.grip_per_s, blend_s),
       world_weight_(now.world_weight - own.world_weight,
                     rate.world_weight_per_s - own_rate.world_weight_per_s, blend_s) {
+    const Vec3 p = now.chest_from_hand.translation, q = own.chest_from_hand.translation;
+    const Vec3 v = rate.hand_velocity_chest, u = own_rate.hand_velocity_chest;
+    const auto differ = [](Vec3 a, Vec3 b) { return a.x != b.x || a.y != b.y || a.z != b.z; };
+    moves_ = differ(p, q) || differ(v, u) ||
+             differ(rate.hand_angular_chest, own_rate.hand_angular_chest) ||
+             !(now.chest_from_hand.rotation == own.chest_from_hand.rotation);
+    if (moves_) {
+        constexpr double kMoment_s = 1e-5;
+        const Line from = line_to(p), to = line_to(q);
+        const Vec3 from_w = angular_velocity(from.turn, line_to(p + v * kMoment_s).turn, kMoment_s);
+        const Vec3 to_w = angular_velocity(to.turn, line_to(q + u * kMoment_s).turn, kMoment_s);
+        // A fast arm stops before it is overhead: such an offset grows by a seventh of rate times
+        // time.
+        constexpr double kMost_rad = 3, kMost_m = 0.7, kSoonest_s = 0.15;
+        const auto stops = [&](double rate_per_s, double most) {
+            return std::fmin(blend_s, std::fmax(kSoonest_s, most / std::fabs(rate_per_s)));
+        };
+        const double turns_s = stops(length(from_w - to_w), kMost_rad);
+        line_turn_ = of_rotation(from.turn, from_w, to.turn, to_w, turns_s);
+        const auto along = [&](Vec3 hand, double far, Vec3 velocity) {
+            return far > 0 ? dot(hand - shoulder_chest_, velocity) / far : 0;
+        };
+        const double slides = along(p, from.length_m, v) - along(q, to.length_m, u);
+        length_ = {from.length_m - to.length_m, slides, stops(slides, kMost_m)};
+        rotation_ =
+            of_rotation(conjugate(from.turn) * now.chest_from_hand.rotation,
+                        rotate(conjugate(from.turn), rate.hand_angular_chest - from_w),
+                        conjugate(to.turn) * own.chest_from_hand.rotation,
+                        rotate(conjugate(to.turn), own_rate.hand_angular_chest - to_w), turns_s);
+    }
     holds_world_ = now.world_weight > 0 && !(own.world_weight > 0);
     held_world_ = now.world_from_hand;
     if (now.world_weight > 0 && own.world_weight > 0) {
@@ -99,8 +136,15 @@ InertialArm::InertialArm(const ArmControl& now, const ControlsRate::Arm& rate,
 }
 
 void InertialArm::apply(double t_s, ArmControl& arm) const {
-    arm.chest_from_hand.translation = arm.chest_from_hand.translation + position_.at(t_s);
-    turn(arm.chest_from_hand.rotation, rotation_.at(t_s));
+    if (moves_) {
+        Line line = line_to(arm.chest_from_hand.translation);
+        Quat hand = conjugate(line.turn) * arm.chest_from_hand.rotation;
+        turn(hand, rotation_.at(t_s));
+        turn(line.turn, line_turn_.at(t_s));
+        arm.chest_from_hand = {
+            normalized(line.turn * hand),
+            shoulder_chest_ + rotate(line.turn, outward_) * (line.length_m + length_.at(t_s))};
+    }
     if (holds_world_) {
         arm.world_from_hand = held_world_;
     }
@@ -167,8 +211,8 @@ InertialFigure::InertialFigure(const MotionContext& context, const Controls& own
         InertialBody({now.pelvis.rotation_world, {}, 0}, turning_of_pelvis(context.rate),
                      {own.pelvis.rotation_world, {}, 0}, turning_of_pelvis(rate), blend_s);
     for (int i = 0; i < 2; ++i) {
-        arms_[i] =
-            InertialArm(now.arms[i], context.rate.arms[i], own.arms[i], rate.arms[i], blend_s);
+        arms_[i] = InertialArm(context.figure, static_cast<Side>(i), now.arms[i],
+                               context.rate.arms[i], own.arms[i], rate.arms[i], blend_s);
         swivel_[i] = {now.legs[i].swivel_rad - own.legs[i].swivel_rad,
                       context.rate.legs[i].swivel_rad_s - rate.legs[i].swivel_rad_s, blend_s};
     }

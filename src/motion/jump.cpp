@@ -32,7 +32,7 @@ double height_of(double height_m) { return clamp(height_m, 0.02, 0.6); }
 class Jump final : public Movement {
  public:
     Jump(const MotionContext& context, const JumpSpec& spec)
-        : figure_(context.figure), base_(make_idle(context, {.duration_s = 2})) {
+        : figure_(context.figure), base_(make_idle(context, {.duration_s = 2, .gets_up = true})) {
         limbs = kAllLimbs;
         const double height = height_of(spec.height_m);
         duration = context.duration.ticks >= 0 ? context.duration

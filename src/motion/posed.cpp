@@ -117,7 +117,7 @@ class Posed final : public Movement {
             if (!which.has(limb)) {
                 continue;
             }
-            const bool arm = limb == Limb::kLeftArm || limb == Limb::kRightArm;
+            const bool arm = is_arm(limb);
             const auto of = [&](const Pose& p) {
                 return p.parent_from_joint[joint.value].rotation;
             };
@@ -126,9 +126,51 @@ class Posed final : public Movement {
             q = figure::clamp_to_limit(figure_.limits[joint.value],
                                        normalized(of(s.own) * conjugate(of(s.solved)) * other));
         }
+        for (const DrivenPath& path : spec_.paths) {
+            if (which.has(path.limb) && is_fixed(path)) {
+                lead_exactly(index_of(side_of(path.limb)), c, pose);
+            }
+        }
     }
 
  private:
+    static bool is_arm(Limb limb) { return limb == Limb::kLeftArm || limb == Limb::kRightArm; }
+    static Side side_of(Limb arm) { return arm == Limb::kLeftArm ? Side::kLeft : Side::kRight; }
+    // The way of a hand that does not go along with the trunk.
+    static bool is_fixed(const DrivenPath& path) {
+        return is_arm(path.limb) && path.space != PathSpace::kChest;
+    }
+
+    // Where the chest is over those hips, whatever the joints of the trunk do.
+    Transform chest_over(Transform world_from_hips, const Pose& pose) const {
+        for (const JointIndex joint : {figure_.spine, figure_.chest, figure_.upper_chest}) {
+            world_from_hips = world_from_hips * pose.parent_from_joint[joint.value];
+        }
+        return world_from_hips;
+    }
+
+    // A hand that is fixed to the world, solved from the chest that the pose has: controls know how
+    // far the trunk bends, and not how that is spread over its joints. Keeps the fingers.
+    void lead_exactly(int side, const Controls& controls, Pose& pose) const {
+        const auto i = static_cast<std::size_t>(side);
+        Controls c = controls;
+        ArmControl& arm = c.arms[i];
+        const Transform hips =
+            pose.parent_from_joint[figure_.root.value] * pose.parent_from_joint[figure_.hips.value];
+        const Transform fixed = inverse(chest_over(hips, pose)) * arm.world_from_hand;
+        const double w = clamp(arm.world_weight, 0, 1);
+        arm.chest_from_hand = {slerp(arm.chest_from_hand.rotation, fixed.rotation, w),
+                               lerp(arm.chest_from_hand.translation, fixed.translation, w)};
+        arm.world_weight = 0;
+        Pose& solved = scratch().joining;
+        solve_controls(figure_, c, solved);
+        const figure::Arm& joints = figure_.arms[i];
+        for (const JointIndex joint : {joints.clavicle, joints.shoulder, joints.shoulder_twist,
+                                       joints.elbow, joints.elbow_twist, joints.hand}) {
+            pose.parent_from_joint[joint.value] = solved.parent_from_joint[joint.value];
+        }
+    }
+
     // The DOFs of one joint that the source drives.
     struct Drive {
         JointIndex joint;
@@ -178,6 +220,9 @@ class Posed final : public Movement {
         }
         for (const DrivenPath& path : spec_.paths) {
             paths_ = paths_.with(path.limb);
+            if (is_fixed(path)) {
+                overlays = overlays.with(path.limb);
+            }
         }
         for (const Side side : {Side::kLeft, Side::kRight}) {
             const Limb leg = leg_of(side);
@@ -310,7 +355,8 @@ class Posed final : public Movement {
         const Side side = path.limb == Limb::kLeftArm ? Side::kLeft : Side::kRight;
         ArmControl& arm = c.arms[index_of(side)];
         const figure::Arm& joints = figure_.arms[index_of(side)];
-        const Transform world_from_chest_now = world_from_chest(figure_, c);
+        const Transform world_from_chest_now =
+            chest_over({c.pelvis.rotation_world, c.pelvis.position_world}, pose);
         const bool fixed = path.space != PathSpace::kChest;
         const Vec3 world = path.space == PathSpace::kWorld ? at : world_from_start_ * at;
         const Vec3 chest = fixed ? inverse(world_from_chest_now) * world : at;

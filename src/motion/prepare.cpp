@@ -341,6 +341,7 @@ void Preparer::throw_ball() {
 }
 
 void Preparer::catch_ball() {
+    tell_seated();
     const PropIndex ball = result_.prop = arguments_.prop("ball");
     result_.gaze = {.kind = GazeKind::kProp, .prop = ball};
     if (around_.holds.valid() && !holds(ball)) {
@@ -362,7 +363,8 @@ void Preparer::catch_ball() {
         }
         result_.takes_prop = off <= kCatch_m;
     }
-    result_.movement = make_catch(context_, {.radius_m = radius(ball)});
+    result_.movement =
+        make_catch(context_, {.radius_m = radius(ball), .held = holds(ball) || result_.takes_prop});
 }
 
 void Preparer::own() {
@@ -532,7 +534,13 @@ void Preparer::reach() {
                          .palm_to_world = optional_target("palm"),
                          .fingers_to_world = optional_target("fingers"),
                          .elbow_rad = elbow()};
-    keep(make_reach(context_, spec), true);
+    ArmMovement made = make_reach(context_, spec);
+    const bool wishes = spec.palm_to_world || spec.fingers_to_world;
+    if (!wishes && made.residual_rad > kShown_rad) {
+        note("cannot-reach", "the arm does not go there: the hand stops on the way",
+             "let the figure face the target first, or take the other arm");
+    }
+    keep(std::move(made), wishes);
 }
 
 void Preparer::point(bool straight) {
@@ -636,7 +644,9 @@ Prepared Preparer::run() {
                                       clamp(arguments_.number("bites"), 1, kMostBites))}));
     } else {
         PUP_REQUIRE(name == "swing");
-        result_.movement = make_relax(context_, 1);
+        if (!hands_full(1)) {
+            result_.movement = make_relax(context_, 1);
+        }
     }
     return std::move(result_);
 }

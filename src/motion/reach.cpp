@@ -5,6 +5,7 @@
 #include "puppetri/base/elementary.h"
 #include "puppetri/motion/arm_goal.h"
 #include "puppetri/motion/arms.h"
+#include "puppetri/motion/solve_controls.h"
 
 namespace puppetri::motion {
 namespace {
@@ -15,8 +16,9 @@ class ArmTo final : public Movement {
         : i_(index_of(side)), own_(own) {
         limbs = limb_set(arm_of(side));
         duration = duration_of(chest_context, duration_s);
-        offset_ = InertialArm(chest_context.now.arms[i_], chest_context.rate.arms[i_], own_, {},
-                              duration.seconds());
+        offset_ =
+            InertialArm(chest_context.figure, static_cast<Side>(i_), chest_context.now.arms[i_],
+                        chest_context.rate.arms[i_], own_, {}, duration.seconds());
     }
     void sample(double t_s, Controls& out) const override {
         out.arms[i_] = own_;
@@ -31,17 +33,53 @@ class ArmTo final : public Movement {
 
 double sign(Side side) { return side == Side::kLeft ? 1 : -1; }
 
-// Without a wish for the hand: along the line from the shoulder.
-ArmControl along_the_line(const figure::Figure& figure, Side side, Vec3 target_chest) {
+Quat chest_from_forearm(const figure::Figure& figure, Side side, const figure::Pose& pose) {
+    const figure::Arm& arm = figure.arms[index_of(side)];
+    Quat q;
+    for (const figure::JointIndex joint : {arm.clavicle, arm.shoulder, arm.elbow}) {
+        q = q * pose.parent_from_joint[joint.value].rotation;
+    }
+    return q;
+}
+
+// Where an arm goes at all, roughly: within that angle about a direction ahead and outward. What
+// lies behind it is taken to the rim of that cone.
+constexpr double kGoes_rad = radians(105);
+
+// Without a wish for the hand: along the line from the shoulder. `aside_rad`: how far off the line
+// to the target that is.
+ArmControl along_the_line(const figure::Figure& figure, const Controls& now, Side side,
+                          Vec3 target_chest, double elbow_rad, double& aside_rad) {
     const figure::Arm& arm = figure.arms[index_of(side)];
     const Vec3 shoulder = shoulder_chest(figure, side), way = target_chest - shoulder;
-    const Vec3 ahead = normalized(way, {0, 0, 1});
+    const Vec3 centre = normalized(Vec3{0.5 * sign(side), -0.2, 0.85});
+    const Vec3 wish = normalized(way, {0, 0, 1});
+    const Quat away = shortest_arc(centre, wish, {0, 1, 0});
+    const double angle = angle_between(away, {});
+    aside_rad = std::fmax(0, angle - kGoes_rad);
+    const Vec3 ahead =
+        aside_rad > 0
+            ? rotate(from_rotation_vector(to_rotation_vector(away) * (kGoes_rad / angle)), centre)
+            : wish;
     const double palm_m = std::fabs(arm.hand_from_palm.translation.x);
     const double most = 0.97 * (arm.upper_m + arm.fore_m);
     const double reach = clamp(length(way) - palm_m, 0.3 * most, most);
-    ArmControl control;
-    control.chest_from_hand = {shortest_arc({sign(side), 0, 0}, ahead, {0, 1, 0}),
-                               shoulder + ahead * reach};
+    Controls c = now;
+    ArmControl& control = c.arms[index_of(side)];
+    control = {};
+    Transform& hand = control.chest_from_hand;
+    hand = {shortest_arc({sign(side), 0, 0}, ahead, {0, 1, 0}), shoulder + ahead * reach};
+    control.swivel_rad = elbow_rad;
+    // Rolled so that the forearm need not twist to its end.
+    figure::Pose pose;
+    solve_controls(figure, c, pose);
+    const Vec3 axis{sign(side), 0, 0};
+    const double twist =
+        to_swing_twist(conjugate(chest_from_forearm(figure, side, pose)) * hand.rotation, axis)
+            .twist_rad;
+    constexpr double kMost_rad = radians(50);
+    const double easy = clamp(twist, -kMost_rad, kMost_rad);
+    hand.rotation = normalized(hand.rotation * from_axis_angle(axis, easy - twist));
     return control;
 }
 
@@ -95,8 +133,8 @@ ArmMovement make_reach(const MotionContext& given, const ReachSpec& spec) {
         result.residual_m = answer.residual_m;
         result.residual_rad = answer.residual_rad;
     } else {
-        own = along_the_line(context.figure, spec.side, target);
-        own.swivel_rad = spec.elbow_rad.value_or(0);
+        own = along_the_line(context.figure, context.now, spec.side, target,
+                             spec.elbow_rad.value_or(0), result.residual_rad);
     }
     own.relaxed = 0.4;
     own.spread = 0.6;

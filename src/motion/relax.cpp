@@ -15,13 +15,13 @@ constexpr double kSettle_s = 0.7;  // until fast arms hang
 class FadingArm {
  public:
     FadingArm() = default;
-    FadingArm(const ArmControl& now, const ControlsRate::Arm& rate, const ArmControl& own,
-              double blend_s) {
+    FadingArm(const figure::Figure& figure, Side side, const ArmControl& now,
+              const ControlsRate::Arm& rate, const ArmControl& own, double blend_s) {
         ArmControl from = now;
         ControlsRate::Arm from_rate = rate;
         from.chest_from_hand = own.chest_from_hand;
         from_rate.hand_velocity_chest = from_rate.hand_angular_chest = {};
-        offset_ = InertialArm(from, from_rate, own, {}, blend_s);
+        offset_ = InertialArm(figure, side, from, from_rate, own, {}, blend_s);
     }
     void apply(double t_s, ArmControl& arm) const { offset_.apply(t_s, arm); }
 
@@ -55,7 +55,8 @@ class Relax final : public Movement {
             const int i = index_of(side);
             hanging_[i] = hanging_arm(context.figure, side);
             swing_[i] = swing_to(context, side, hanging_[i].chest_from_hand, kSettle_s);
-            fade_[i] = FadingArm(context.now.arms[i], context.rate.arms[i], hanging_[i], 0.4);
+            fade_[i] = FadingArm(context.figure, side, context.now.arms[i], context.rate.arms[i],
+                                 hanging_[i], 0.4);
         }
     }
     void sample(double t_s, Controls& out) const override {
@@ -93,7 +94,8 @@ class ArmSwing final : public Movement {
         const Transform target{about_x(-spec.angle_rad) * own_.chest_from_hand.rotation,
                                shoulder + from_cylinder(c)};
         swing_ = swing_to(context, spec.side, target, duration_s);
-        fade_ = FadingArm(context.now.arms[i_], context.rate.arms[i_], own_, duration_s);
+        fade_ = FadingArm(context.figure, static_cast<Side>(i_), context.now.arms[i_],
+                          context.rate.arms[i_], own_, duration_s);
     }
     void sample(double t_s, Controls& out) const override {
         out.arms[i_] = own_;

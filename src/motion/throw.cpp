@@ -6,6 +6,7 @@
 // arc, for arms are fast across and slow along.
 #include "arm_state.h"
 #include "body_accent.h"
+#include "foot_path.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/motion/arms.h"
 #include "puppetri/motion/ball_game.h"
@@ -39,6 +40,12 @@ class Throw final : public Movement {
         base_ =
             make_idle(context, {.limbs = without(kAllLimbs, kBothArms), .duration_s = release_s_});
         phases = base_->phases;
+        for (const PhaseSpan& span : phases) {
+            if (span.phase == Phase::kSupport) {
+                down_s_[span.limb == Limb::kLeftLeg ? 0 : 1] = span.begin.seconds();
+            }
+        }
+        reach_ = KeepReach(figure_, stands(0), context.now);
         for (const MovementEvent& event : base_->events) {
             if (event.after_start <= duration) {
                 events.insert(events.end() - 1, event);
@@ -62,7 +69,9 @@ class Throw final : public Movement {
     void body(double t_s, Controls& out) const {
         base_->sample(t_s, out);
         accent_.apply(t_s, out);
+        reach_.apply(stands(t_s), t_s, out);
     }
+    std::array<bool, 2> stands(double t_s) const { return {t_s >= down_s_[0], t_s >= down_s_[1]}; }
 
     Vec3 shoulders(const Controls& controls) const {
         return world_from_chest(figure_, controls) *
@@ -253,6 +262,8 @@ class Throw final : public Movement {
     double flight_s_;
     MovementPtr base_, after_;
     BodyAccent accent_;
+    std::array<double, 2> down_s_{};
+    KeepReach reach_;
     Vec3 ahead_, left_, wrists_ball_;
     Quat aim_;
     Curve1 theta_, rho_, side_, pitch_;

@@ -192,25 +192,34 @@ TEST_CASE(
     "an inertialized arm begins with the value and the rate that were found, also for large turns "
     "[law]") {
     Lcg random;
+    const figure::Figure figure = figure::make_mannequin(1.75);
     for (int i = 0; i < 200; ++i) {
         const Quat q = random.rotation(), own_q = random.rotation();
-        const Vec3 w = random.vector() * 3, own_w = random.vector() * 3, p = random.vector();
+        const Vec3 w = random.vector() * 3, own_w = random.vector() * 3, v = random.vector(),
+                   u = random.vector();
+        const Vec3 p = Vec3{-0.5, 0, 0.3} + random.vector() * 0.2,
+                   own_p = Vec3{-0.5, 0, 0.3} + random.vector() * 0.2;
         ArmControl now, own;
         now.chest_from_hand = {q, p};
-        own.chest_from_hand = {own_q, {}};
+        own.chest_from_hand = {own_q, own_p};
         ControlsRate::Arm rate, own_rate;
         rate.hand_angular_chest = w;
         own_rate.hand_angular_chest = own_w;
-        const InertialArm inertia(now, rate, own, own_rate, 0.4);
+        rate.hand_velocity_chest = v;
+        own_rate.hand_velocity_chest = u;
+        const InertialArm inertia(figure, Side::kRight, now, rate, own, own_rate, 0.4);
         auto at = [&](double t) {
             ArmControl a = own;
-            a.chest_from_hand.rotation = from_rotation_vector(own_w * t) * own_q;
+            a.chest_from_hand = {from_rotation_vector(own_w * t) * own_q, own_p + u * t};
             inertia.apply(t, a);
             return a.chest_from_hand;
         };
         constexpr double h = 1e-5;
         CHECK(angle_between(at(0).rotation, q) < 1e-7);
         CHECK(length(at(0).translation - p) < 1e-12);
-        CHECK(length(angular_velocity(at(0).rotation, at(h).rotation, h) - w) < 0.01);
+        CHECK(length(angular_velocity(at(0).rotation, at(h).rotation, h) - w) < 0.02);
+        CHECK(length((at(h).translation - at(0).translation) * (1 / h) - v) < 0.02);
+        CHECK(length(at(1).translation - (own_p + u)) < 1e-9);
+        CHECK(angle_between(at(1).rotation, from_rotation_vector(own_w) * own_q) < 1e-7);
     }
 }

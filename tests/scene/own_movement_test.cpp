@@ -165,6 +165,25 @@ TEST_CASE("a hand goes along its path before the chest and in the world [oracle]
     const Performed q = performed(world);
     CHECK(length(joint_at(*q.performance, "leftHand", 2) - Vec3{0.3, 1.15, 0.4}) < 1e-6);
     check_good(measured(q, world), "over the ball");
+
+    // Whatever the trunk does: its joints bend by very different amounts, and the hips move.
+    const Scene bent = one(R"(movement m(me: actor, what: prop) {
+  takes 2 s
+  me.hips.flex = 20 deg * sin(pi*t/2 s)
+  me.spine.flex = 25 deg * sin(pi*t/2 s)
+  me.chest.side = 12 deg * sin(pi*t/1 s)
+  me.upper_chest.twist = 15 deg * sin(pi*t/2 s)
+  me.pelvis.position = (0.02, -0.04, -0.05) m * sin(pi*t/2 s)
+  me.left_hand.position = what.position + (0.1, 0.05, 0) m in world
+})",
+                           "m(ball)");
+    const Performed r = performed(bent);
+    // From when it has got there.
+    for (double t = 1.4; t < 3; t += 0.05) {
+        CHECK_MESSAGE(
+            length(joint_at(*r.performance, "leftHand", t) - Vec3{0.4, 1.05, 0.4}) < 0.001, t);
+    }
+    check_good(measured(r, bent), "over the ball, bent");
 }
 
 TEST_CASE(

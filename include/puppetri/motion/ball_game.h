@@ -54,8 +54,8 @@ MovementPtr make_receive(const MotionContext& context, const ReceiveSpec& spec);
 struct CatchSpec {
     double radius_m = 0.11;
     double duration_s = 0.7;
+    bool held = true;  // both hands are on the ball; otherwise they close on air
 };
-// Needs   both hands on the ball.
 // Gives   event "catch" at its start. Hands, knees and trunk give way, then bring the ball to the
 // belly.
 MovementPtr make_catch(const MotionContext& context, const CatchSpec& spec);

@@ -18,7 +18,7 @@ struct HugSpec {
 // embrace each other do not meet with their arms. All limbs; the feet stay.
 struct Hug {
     MovementPtr movement;
-    bool near = true;  // false: farther or nearer than arms go around
+    bool near = true;  // false: farther or nearer than arms go around, or not before it
 };
 Hug make_hug(const MotionContext& context, const HugSpec& spec);
 

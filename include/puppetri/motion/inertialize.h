@@ -49,19 +49,30 @@ class InertialBody {
     InertialOffset breath_;
 };
 
-// The part in chest space, fingers and swivel. The weight of the world's point fades too: towards a
-// movement that fixes the hand to the world, or away from one (the hand then leaves the point where
-// it was).
+// The part in chest space, fingers and swivel. The hand swings about the shoulder from where it
+// was, turned with the arm, so that the elbow does not fold and the wrist does not bend on the way.
+// The weight of the world's point fades too: towards a movement that fixes the hand to the world,
+// or away from one (the hand then leaves the point where it was).
 class InertialArm {
  public:
     InertialArm() = default;
-    InertialArm(const ArmControl& now, const ControlsRate::Arm& rate, const ArmControl& own,
+    InertialArm(const figure::Figure& figure, Side side, const ArmControl& now,
+                const ControlsRate::Arm& rate, const ArmControl& own,
                 const ControlsRate::Arm& own_rate, double blend_s);
     void apply(double t_s, ArmControl& arm) const;
 
  private:
-    InertialOffset3 position_, rotation_, world_position_, world_rotation_;
-    InertialOffset swivel_, relaxed_, spread_, grip_, world_weight_;
+    // The straight arm from the shoulder to the wrist: its turn from the T-pose, and its length.
+    struct Line {
+        Quat turn;
+        double length_m = 0;
+    };
+    Line line_to(Vec3 hand_chest) const;
+
+    Vec3 shoulder_chest_, outward_;
+    bool moves_ = false;
+    InertialOffset3 line_turn_, rotation_, world_position_, world_rotation_;
+    InertialOffset length_, swivel_, relaxed_, spread_, grip_, world_weight_;
     Transform held_world_;
     bool holds_world_ = false;
 };
