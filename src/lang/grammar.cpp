@@ -119,6 +119,21 @@ struct close : terminal {
     PUP_MATCH { return !in.empty() && !reader.tokens[reader.at(in)].space_before; }
 };
 
+// Not a sign that begins a value of its own: `starts -1` after a word, spaced like this, is two
+// values of a property.
+struct no_sign : terminal {
+    using rule_t = no_sign;
+    PUP_MATCH {
+        const std::uint32_t i = reader.at(in);
+        if (in.size() < 2 || i == 0) {
+            return true;
+        }
+        const Token& sign = reader.tokens[i];
+        return !((sign.kind == Kind::kMinus || sign.kind == Kind::kPlus) && sign.space_before &&
+                 !reader.tokens[i + 1].space_before && is_word(reader.tokens[i - 1].kind));
+    }
+};
+
 struct finish : terminal {
     using rule_t = finish;
     PUP_MATCH {
@@ -382,7 +397,8 @@ struct transition_ahead : ahead<is_public, name, opt<caption>, tok<K::kColon>> {
 struct any_statement : sor<seq<transition_ahead, transition>, place, state, data, token_type, event, events, use, rule,
                            question, loop, net, cast, ends, enumeration, header, import, block> {};
 
-struct value : sor<expr, node<N::kSymbol, sor<tok<K::kArrow>, tok<K::kColon>, tok<K::kAssign>, tok<K::kEqual>>>> {};
+struct value_expr : expression<value_expr, seq<no_sign, any_op>> {};
+struct value : sor<value_expr, node<N::kSymbol, sor<tok<K::kArrow>, tok<K::kColon>, tok<K::kAssign>, tok<K::kEqual>>>> {};
 struct property : statement<N::kProperty, path, star<value>> {};
 struct member : statement<N::kMember, name, tok<K::kColon>, name> {};
 struct formula : statement<N::kFormula, expr> {};

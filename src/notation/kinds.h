@@ -8,7 +8,12 @@
 namespace puppetri::notation {
 
 void lower_automaton(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_cells(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_event_graph(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_logic(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_markov(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_messages(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_pulses(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_queue(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_unit(const lang::Block& block, const lang::File& file, Lowered& out);
 

@@ -12,8 +12,13 @@ namespace {
 // In alphabetical order.
 constexpr std::array kNotations = {
     Notation{"automaton", "a finite automaton whose states last", lower_automaton},
+    Notation{"cells", "a cellular automaton whose cells may be figures", lower_cells},
     Notation{"event_graph", "an event graph: events that schedule and cancel others",
              lower_event_graph},
+    Notation{"logic", "a digital circuit of gates with delays", lower_logic},
+    Notation{"markov", "a Markov chain in steps or in continuous time", lower_markov},
+    Notation{"messages", "nodes that pass messages both ways along links", lower_messages},
+    Notation{"pulses", "a pulse process on a signed, weighted digraph", lower_pulses},
     Notation{"queue", "a queueing network: sources, stations with servers, routes", lower_queue},
     Notation{"unit", "event units: sequence, parallel, choice, repeat, until, interrupt",
              lower_unit},

@@ -185,7 +185,7 @@ std::optional<SimTime> Elaboration::ticks(const Number& seconds, lang::Span wher
               "use a shorter one: at most 400 years");
         return std::nullopt;
     }
-    if (!t->exact) {
+    if (!t->exact && !reading_distribution_) {
         tell(Severity::kNote, "rounded", where,
              "this is no whole number of ticks of 1/705600000 s and was rounded to one", "");
     }

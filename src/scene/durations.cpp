@@ -121,7 +121,9 @@ net::DurationDraft Elaboration::distribution_of(const lang::Expr& e, const Scope
         const ValueType type = !shape                                ? kTime
                                : d.kind == DistributionKind::kErlang ? ValueType{ValueKind::kInt}
                                                                      : ValueType{ValueKind::kReal};
+        const bool before = std::exchange(reading_distribution_, true);
         auto value = expr_of(*matched.values[i], scope, type);
+        reading_distribution_ = before;
         if (!value) {
             return {.where = out.where};
         }

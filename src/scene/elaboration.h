@@ -216,6 +216,9 @@ class Elaboration {
     Term evaluate_call(const lang::Expr& e, const Scope& scope);
     Term call_function(const lang::Expr& e, const Function& function, const Scope& scope);
     Term evaluate_tuple(const lang::Expr& e, const Scope& scope);
+    bool is_unknown_name(const lang::Expr& e, const Scope& scope);
+    // The value of that name of the enumeration that the data are of.
+    std::optional<Term> value_beside(const lang::Expr& name, const Term& data);
     Term fold(const lang::Expr& e, lang::Op op, const Term& a, const Term& b);
     Term fold_numbers(const lang::Expr& e, lang::Op op, const Number& a, const Number& b);
     Term compare_things(const lang::Expr& e, const Term& a, const Term& b);
@@ -340,6 +343,7 @@ class Elaboration {
     std::string element_;  // what is being looked at
     lang::Span statement_;
     bool reading_rate_ = false;
+    bool reading_distribution_ = false;  // whose parameters need be no whole number of ticks
     std::set<std::tuple<std::string, std::uint32_t, std::uint32_t>> told_;
     std::set<NodeKey> used_;
 

@@ -196,11 +196,46 @@ Term Elaboration::evaluate_binary(const lang::Expr& e, const Scope& scope) {
               "write `rule NAME ltl ...`");
         return Nothing{};
     }
+    if ((e.op == Op::kEqual || e.op == Op::kNotEqual) && e.args.size() == 2) {
+        // A value of an enumeration is known beside data of it, wherever that was declared.
+        for (const std::size_t i : {0, 1}) {
+            if (is_unknown_name(e.args[i].value, scope)) {
+                const Term data = evaluate(e.args[1 - i].value, scope);
+                if (const auto value = value_beside(e.args[i].value, data)) {
+                    return fold(e, e.op, data, *value);
+                }
+            }
+        }
+    }
     Term result = evaluate(e.args[0].value, scope);
     for (std::size_t i = 1; i < e.args.size(); ++i) {
         result = fold(e, e.op, result, evaluate(e.args[i].value, scope));
     }
     return result;
+}
+
+bool Elaboration::is_unknown_name(const lang::Expr& e, const Scope& scope) {
+    return e.kind == ExprKind::kPath && e.path.steps.size() == 1 && e.path.steps[0].index.empty() &&
+           !is_word(e.path.steps[0].text) && !resolve_first(e.path.steps[0], scope);
+}
+
+std::optional<Term> Elaboration::value_beside(const lang::Expr& name, const Term& data) {
+    ValueType type;
+    if (const auto* datum = std::get_if<DatumTerm>(&data)) {
+        type = draft().data[datum->datum.value].type;
+    } else if (const auto* x = std::get_if<Expr>(&data)) {
+        type = x->type();
+    }
+    if (type.kind != ValueKind::kEnum) {
+        return std::nullopt;
+    }
+    const std::vector<std::string>& values = draft().enums[type.enumeration].values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (values[i] == name.path.steps[0].text) {
+            return Term{EnumTerm{type.enumeration, static_cast<std::int64_t>(i)}};
+        }
+    }
+    return std::nullopt;
 }
 
 Term Elaboration::fold(const lang::Expr& e, Op op, const Term& a, const Term& b) {
@@ -447,6 +482,9 @@ std::optional<Expr> Elaboration::as_expr_of(const Term& term, ValueType type, la
     auto e = as_expr(fitted, where);
     if (!e || e->type() == type) {
         return e;
+    }
+    if (type.kind == ValueKind::kReal && number != nullptr) {
+        return Expr::real(number->value);
     }
     if (type.kind == ValueKind::kReal && e->type().kind == ValueKind::kInt) {
         return apply(ExprOp::kToReal, {std::move(*e)}, where);

@@ -338,6 +338,25 @@ TEST_CASE("blocks of any kind keep their properties [unit]") {
     CHECK(file.body.blocks[2].name.text.empty());
 }
 
+TEST_CASE("a sign after a word begins a value where it is spaced as one [unit]") {
+    const auto values = [](const char* property) {
+        const Parsed parsed = parse(std::string("thing x {\n  ") + property + "\n}\n", "a.pup", 0);
+        REQUIRE(parsed.diagnostics.empty());
+        std::vector<std::string> out;
+        for (const Expr& e : parsed.file.body.blocks[0].properties[0].values) {
+            out.push_back(to_text(e));
+        }
+        return out;
+    };
+    using Values = std::vector<std::string>;
+    CHECK(values("a starts -1 pulse -x*2") == Values{"starts", "-1", "pulse", "-x*2"});
+    CHECK(values("a starts - 1") == Values{"starts - 1"});
+    CHECK(values("a starts-1") == Values{"starts - 1"});
+    CHECK(values("a 3 -1") == Values{"3 - 1"});
+    CHECK(values("a f(b -1)") == Values{"f(b - 1)"});
+    CHECK(values("a whole -5 .. -1") == Values{"whole", "-5 .. -1"});
+}
+
 TEST_CASE("the cast has kinds with properties, on one line or on many [unit]") {
     const File file = parsed(
         "cast {\n  ana: mannequin { height 1.75 m, held by rui.hands }\n  ball: sphere {\n    mass "

@@ -54,6 +54,28 @@ const net::Rule& rule(const Scene& scene, const std::string& path) {
 
 constexpr std::int64_t kMillisecond = kTicksPerMillisecond;
 
+TEST_CASE(
+    "values of an enumeration are known beside data of it; reals begin with any number [unit]") {
+    const std::string net = R"(net light {
+  enum Colour { red, green }
+  public data lit: Colour = green
+  public data level: real = 2
+  place p takes 1 s tokens 1
+  t: p -> p set lit := lit = red ? green : red
+}
+use light as l
+place q tokens 1
+)";
+    const Scene scene = from_text(net +
+                                  "u: q -> when l.lit = red and red != l.lit\n"
+                                  "rule r never l.lit = green\n");
+    CHECK(scene.draft.data[0].initial == 1);
+    CHECK(scene.draft.data[1].initial == value_of_real(2));
+    const Diagnostics list = defects_of(net + "u: q -> when l.lit = blue\n");
+    REQUIRE(list.size() == 1);
+    CHECK(list[0].code == "unknown-name");
+}
+
 }  // namespace
 
 TEST_CASE("instances may name each other in any order, and roles carry their parameters [unit]") {

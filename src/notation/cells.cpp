@@ -1,0 +1,764 @@
+// SPDX-License-Identifier: MIT
+// Cellular automata: a row, ring, grid or torus of cells that all change at once. The states of the
+// cells are data, and one transition sets all of them in one firing, from the values before it: the
+// update is synchronous by the very rule of assignments. Cells that are figures have a place for
+// each state besides, in which the state's movement is performed; their tokens follow the data in
+// the same instant.
+//   cells wave {
+//     ring 40
+//     every 0.4 s
+//     sitting
+//     rising does me.stand_up()
+//     sitting -> rising when left = rising
+//     starts rising at 1
+//   }
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "kinds.h"
+#include "line.h"
+#include "literal.h"
+#include "make.h"
+
+namespace puppetri::notation {
+namespace {
+
+using lang::Expr;
+using lang::ExprKind;
+using lang::Op;
+
+constexpr std::int64_t kMostCells = 10'000;
+constexpr int kMostRadius = 10;
+// Above what scenes use, so that the figures of one instant follow before anything else happens,
+// in a settled order: the order changes nothing, and provers need not try all of them.
+constexpr std::int64_t kFollows = 1'000'000;
+constexpr std::int64_t kOrders = 64;
+
+constexpr std::string_view kStateForm = "NAME \"caption\" shown \"#\" does me.MOVEMENT takes TIME";
+constexpr std::string_view kRuleForm = "FROM -> TO when CONDITION";
+constexpr std::string_view kStartForm = "starts STATE at CELL, or at [CELL, CELL]";
+
+struct Offset {
+    int right = 0, down = 0;
+};
+
+struct Direction {
+    std::string_view name;
+    Offset offset;
+};
+constexpr Direction kDirections[] = {
+    {"me", {0, 0}},        {"left", {-1, 0}},      {"right", {1, 0}},
+    {"up", {0, -1}},       {"down", {0, 1}},       {"up_left", {-1, -1}},
+    {"up_right", {1, -1}}, {"down_left", {-1, 1}}, {"down_right", {1, 1}},
+};
+
+class Cells {
+ public:
+    Cells(const lang::Block& block, const lang::File& file, Lowered& out)
+        : block_(block), teller_(block, file, out), body_(out.net.body) {}
+
+    void lower() {
+        const auto each = [this](auto&& wanted, auto&& read) {
+            for (const lang::Property& p : block_.properties) {
+                if (wanted(p)) {
+                    Line line(p, teller_);
+                    read(line, p);
+                }
+            }
+        };
+        each(is_setting, [this](Line& line, const lang::Property& p) { setting(line, p); });
+        each([](const lang::Property& p) { return !is_setting(p) && !is_rule(p) && !is_start(p); },
+             [this](Line& line, const lang::Property&) { state(line); });
+        if (!good()) {
+            return;
+        }
+        cells_.assign(static_cast<std::size_t>(columns_ * rows_), 0);
+        each(is_rule, [this](Line& line, const lang::Property&) { rule(line); });
+        each(is_start, [this](Line& line, const lang::Property&) { start(line); });
+        make();
+    }
+
+ private:
+    struct State {
+        lang::Name name;
+        char shown = 0;
+        Expr does;
+        lang::Duration takes;
+        lang::Span span;
+        bool entered = false;
+    };
+    struct Rule {
+        std::size_t from = 0, to = 0;
+        Expr when;
+        lang::Span span;
+    };
+
+    static bool named(const lang::Property& p, std::initializer_list<std::string_view> names) {
+        return p.name.steps.size() == 1 && !is_rule(p) &&
+               std::find(names.begin(), names.end(), p.name.steps[0].text) != names.end();
+    }
+    static bool is_setting(const lang::Property& p) {
+        return named(p, {"row", "ring", "grid", "torus", "every", "neighbours", "outside",
+                         "figures", "wolfram"});
+    }
+    static bool is_rule(const lang::Property& p) {
+        return !p.values.empty() && p.values[0].kind == ExprKind::kSymbol &&
+               p.values[0].text == "->";
+    }
+    static bool is_start(const lang::Property& p) { return named(p, {"starts", "pattern"}); }
+
+    void setting(Line& line, const lang::Property& p) {
+        const std::string& what = p.name.steps[0].text;
+        if (what == "every") {
+            if (const Expr* e = line.value("the time of a step")) {
+                period_ = *e;
+            }
+        } else if (what == "neighbours") {
+            neighbours(line);
+        } else if (what == "outside") {
+            if (const lang::Path* path = line.path("a state")) {
+                outside_ = *path;
+            }
+        } else if (what == "figures") {
+            if (const Expr* e = line.value("figures")) {
+                figures_ = *e;
+            }
+        } else if (what == "wolfram") {
+            if (const Expr* e = line.value("the number of a rule")) {
+                wolfram_ = literal_whole(*e, 0, 255, "the number of an elementary rule", teller_);
+                wolfram_span_ = line.span();
+            }
+        } else {
+            shape(line, what);
+        }
+        line.finish("ring 40, every 1 s, neighbours 1, outside STATE, figures [ana, rui]");
+    }
+
+    void shape(Line& line, const std::string& what) {
+        if (columns_ != 0) {
+            teller_.error("name-twice", line.span(), "the shape of the cells is said twice",
+                          "keep one of the lines");
+        }
+        wraps_ = what == "ring" || what == "torus";
+        flat_ = what == "grid" || what == "torus";
+        const Expr* e = line.value(flat_ ? "columns and rows" : "the number of cells");
+        if (e == nullptr) {
+            return;
+        }
+        if (flat_ && (e->kind != ExprKind::kTuple || e->args.size() != 2)) {
+            teller_.error("syntax", e->span, "a " + what + " has columns and rows",
+                          "write " + what + " (40, 30)");
+            return;
+        }
+        const auto columns =
+            literal_whole(flat_ ? e->args[0].value : *e, 1, kMostCells,
+                          flat_ ? "the number of columns" : "the number of cells", teller_);
+        const auto rows =
+            flat_ ? literal_whole(e->args[1].value, 1, kMostCells, "the number of rows", teller_)
+                  : std::optional<std::int64_t>(1);
+        if (columns && rows && *columns * *rows > kMostCells) {
+            teller_.error("net-too-large", e->span,
+                          "more than " + std::to_string(kMostCells) + " cells",
+                          "write fewer columns or rows");
+        } else if (columns && rows) {
+            columns_ = *columns;
+            rows_ = *rows;
+        }
+        shape_span_ = line.span();
+    }
+
+    void neighbours(Line& line) {
+        if (line.word("moore")) {
+            return;
+        }
+        if (line.word("von_neumann")) {
+            diamond_ = true;
+        } else if (const Expr* e = line.value("a distance, moore or von_neumann")) {
+            radius_ = static_cast<int>(
+                literal_whole(*e, 1, kMostRadius, "the distance of neighbours", teller_)
+                    .value_or(1));
+            diamond_ = line.word("von_neumann");
+        }
+    }
+
+    void state(Line& line) {
+        State made{.name = line.name().steps[0], .does = {}, .takes = {}, .span = line.span()};
+        lang::Caption caption = line.caption();
+        while (!line.done()) {
+            if (line.word("shown")) {
+                const lang::Caption text = line.caption();
+                if (text.text.size() != 1) {
+                    teller_.error("syntax", line.span(),
+                                  "a state is shown as one character of a pattern",
+                                  "write " + made.name.text + " shown \"#\"");
+                } else {
+                    made.shown = text.text[0];
+                }
+            } else if (line.word("does")) {
+                if (const Expr* e = line.value("a movement of me")) {
+                    made.does = *e;
+                }
+            } else if (line.word("takes")) {
+                if (const Expr* e = line.value("a time")) {
+                    made.takes = make_duration(*e);
+                }
+            } else {
+                line.finish(kStateForm);
+            }
+        }
+        captions_.push_back(std::move(caption));
+        const std::string& name = made.name.text;
+        if (find(name) != nullptr) {
+            teller_.error("name-twice", made.span, "there is already a state " + name,
+                          "choose another name");
+            return;
+        }
+        for (const Direction& d : kDirections) {
+            if (name == d.name || name == "count" || name == "cell") {
+                teller_.error("name-twice", made.span,
+                              name + " means a cell in the rules of this block",
+                              "choose another name for the state");
+                return;
+            }
+        }
+        states_.push_back(std::move(made));
+    }
+
+    bool good() {
+        if (columns_ == 0) {
+            if (shape_span_ == lang::Span{}) {
+                teller_.error("no-cells", block_.name.span, "there are no cells",
+                              "write ring 40, row 40, torus (40, 30) or grid (40, 30)");
+            }
+            return false;
+        }
+        if (!period_) {
+            teller_.error("no-period", block_.name.span, "nothing says how long a step is",
+                          "write every 1 s");
+            return false;
+        }
+        if (states_.size() < 2) {
+            teller_.error("no-states", block_.name.span, "cells have two states or more",
+                          "give each a line of its own; cells begin in the first");
+            return false;
+        }
+        for (std::size_t s = 0; s < states_.size(); ++s) {
+            if (states_[s].shown == 0 && s < 2) {
+                states_[s].shown = s == 0 ? '.' : '#';
+            }
+        }
+        if (wraps_ && !outside_.empty()) {
+            teller_.warn("no-outside", outside_.span, "a ring or torus has no outside",
+                         "remove the line");
+        }
+        if (wolfram_ && (states_.size() != 2 || flat_)) {
+            teller_.error("wolfram", wolfram_span_,
+                          "the numbers of elementary rules are for rows and rings of two states",
+                          "write the rule in lines: FROM -> TO when CONDITION");
+            return false;
+        }
+        return true;
+    }
+
+    const State* find(std::string_view name) const {
+        for (const State& s : states_) {
+            if (s.name.text == name) {
+                return &s;
+            }
+        }
+        return nullptr;
+    }
+
+    std::optional<std::size_t> state_of(const lang::Path& path) {
+        const State* s = path.steps.size() == 1 ? find(path.steps[0].text) : nullptr;
+        if (s == nullptr) {
+            teller_.error("unknown-name", path.span, "cells have no state " + lang::to_text(path),
+                          "give it a line of its own: " + lang::to_text(path));
+            return std::nullopt;
+        }
+        return static_cast<std::size_t>(s - states_.data());
+    }
+
+    void rule(Line& line) {
+        line.symbol("->");
+        const lang::Path* to = line.path("the name of a state");
+        if (to == nullptr) {
+            return;
+        }
+        const auto before = state_of(line.name()), after = state_of(*to);
+        Rule made{.when = {}, .span = line.span()};
+        if (line.word("when")) {
+            if (const Expr* e = line.value("a condition")) {
+                made.when = *e;
+            }
+        }
+        line.finish(kRuleForm);
+        if (!before || !after) {
+            return;
+        }
+        if (wolfram_) {
+            teller_.error("wolfram", line.span(), "there is a numbered rule already",
+                          "remove one of them");
+        }
+        made.from = *before;
+        made.to = *after;
+        states_[*after].entered = true;
+        if (made.when) {
+            const auto errors = errors_;
+            read_at(made.when, 0, 0);  // tells what is wrong with it, once
+            if (errors != errors_) {
+                return;
+            }
+        }
+        rules_.push_back(std::move(made));
+    }
+
+    std::optional<std::size_t> cell_of(const Expr& e) {
+        const bool pair = flat_ && e.kind == ExprKind::kTuple && e.args.size() == 2;
+        if (flat_ && !pair) {
+            teller_.error("syntax", e.span, "a cell is named by its column and row",
+                          "write (3, 2): columns from the left, rows from above, both from 1");
+            return std::nullopt;
+        }
+        const auto column =
+            literal_whole(pair ? e.args[0].value : e, 1, columns_, "the column of a cell", teller_);
+        const auto row =
+            pair ? literal_whole(e.args[1].value, 1, rows_, "the row of a cell", teller_)
+                 : std::optional<std::int64_t>(1);
+        if (!column || !row) {
+            return std::nullopt;
+        }
+        return static_cast<std::size_t>((*row - 1) * columns_ + *column - 1);
+    }
+
+    void start(Line& line) {
+        if (line.name().steps[0].text == "pattern") {
+            if (const Expr* e = line.value("a list of texts")) {
+                pattern(*e);
+            }
+            line.finish("pattern [\"..#\", \"#..\"]");
+            return;
+        }
+        const lang::Path* path = line.path("the name of a state");
+        const auto state = path != nullptr ? state_of(*path) : std::nullopt;
+        if (!state) {
+            return;
+        }
+        states_[*state].entered = true;
+        if (!line.word("at")) {
+            teller_.error("syntax", line.span(), "it does not say which cells",
+                          "write " + std::string(kStartForm));
+            return;
+        }
+        const Expr* e = line.value("a cell");
+        if (e == nullptr) {
+            return;
+        }
+        const auto put = [&](const Expr& which) {
+            if (const auto cell = cell_of(which)) {
+                cells_[*cell] = *state;
+            }
+        };
+        if (e->kind == ExprKind::kList) {
+            for (const lang::Argument& a : e->args) {
+                put(a.value);
+            }
+        } else {
+            put(*e);
+        }
+        line.finish(kStartForm);
+    }
+
+    void pattern(const Expr& e) {
+        std::vector<const Expr*> lines;
+        if (e.kind == ExprKind::kList) {
+            for (const lang::Argument& a : e.args) {
+                lines.push_back(&a.value);
+            }
+        } else {
+            lines.push_back(&e);
+        }
+        if (lines.size() > static_cast<std::size_t>(rows_)) {
+            teller_.error("out-of-range", e.span, "the pattern has more lines than there are rows",
+                          "leave lines out, or make the grid higher");
+            return;
+        }
+        for (std::size_t row = 0; row < lines.size(); ++row) {
+            const Expr& text = *lines[row];
+            if (text.kind != ExprKind::kString ||
+                text.text.size() > static_cast<std::size_t>(columns_)) {
+                teller_.error("out-of-range", text.span,
+                              "a line of a pattern is a text of at most " +
+                                  std::to_string(columns_) + " characters",
+                              "write one character for each cell");
+                return;
+            }
+            for (std::size_t column = 0; column < text.text.size(); ++column) {
+                const auto s = std::find_if(
+                    states_.begin(), states_.end(),
+                    [&](const State& state) { return state.shown == text.text[column]; });
+                if (s == states_.end()) {
+                    teller_.error("unknown-name", text.span,
+                                  std::string("no state is shown as '") + text.text[column] + "'",
+                                  "write `shown \"x\"` behind a state");
+                    return;
+                }
+                s->entered = true;
+                cells_[row * static_cast<std::size_t>(columns_) + column] =
+                    static_cast<std::size_t>(s - states_.begin());
+            }
+        }
+    }
+
+    // cell[3], or cell[2][3]: row, then column.
+    lang::Name cell_name(std::string text, std::int64_t column, std::int64_t row,
+                         lang::Span span) const {
+        lang::Name name{std::move(text), {}, span};
+        if (flat_) {
+            name.index.push_back(make_number(Rational{row + 1}, span));
+        }
+        name.index.push_back(make_number(Rational{column + 1}, span));
+        return name;
+    }
+
+    // The state of the cell that lies so far from this one.
+    Expr neighbour(std::int64_t column, std::int64_t row, Offset offset, lang::Span span) {
+        column += offset.right;
+        row += offset.down;
+        if (wraps_) {
+            column = (column % columns_ + columns_) % columns_;
+            row = (row % rows_ + rows_) % rows_;
+        } else if (column < 0 || column >= columns_ || row < 0 || row >= rows_) {
+            return make_reference(outside_.empty() ? states_[0].name.text : outside_.steps[0].text,
+                                  span);
+        }
+        return make_reference(make_path({cell_name("cell", column, row, span)}, span));
+    }
+
+    // How many neighbours are in a state.
+    Expr count(std::int64_t column, std::int64_t row, const lang::Path& state, lang::Span span) {
+        Expr sum;
+        const int high = flat_ ? radius_ : 0;
+        for (int down = -high; down <= high; ++down) {
+            for (int right = -radius_; right <= radius_; ++right) {
+                if ((right == 0 && down == 0) ||
+                    (diamond_ && std::abs(right) + std::abs(down) > radius_)) {
+                    continue;
+                }
+                Expr one = make_binary(Op::kEqual, neighbour(column, row, {right, down}, span),
+                                       make_reference(state));
+                Expr counted = make_number(Rational{1}, span);
+                Expr choice;
+                choice.kind = ExprKind::kConditional;
+                choice.span = span;
+                choice.args.push_back({{}, std::move(one)});
+                choice.args.push_back({{}, std::move(counted)});
+                choice.args.push_back({{}, make_number(Rational{0}, span)});
+                if (!sum) {
+                    sum = std::move(choice);
+                } else if (sum.kind == ExprKind::kBinary) {
+                    sum.args.push_back({{}, std::move(choice)});
+                } else {
+                    sum = make_binary(Op::kAdd, std::move(sum), std::move(choice));
+                }
+            }
+        }
+        return sum;
+    }
+
+    Expr wrong(lang::Span span, std::string message, std::string remedy) {
+        teller_.error("cell-expected", span, std::move(message), std::move(remedy));
+        ++errors_;
+        return make_bool(false, span);
+    }
+
+    // A condition as it is for this cell: names of neighbours become the data of cells.
+    Expr read_at(const Expr& e, std::int64_t column, std::int64_t row) {
+        if (e.kind == ExprKind::kPath && e.path.steps.size() == 1 &&
+            e.path.steps[0].index.empty()) {
+            for (const Direction& d : kDirections) {
+                if (e.path.steps[0].text == d.name) {
+                    if (!flat_ && d.offset.down != 0) {
+                        return wrong(e.span, "a row of cells has no neighbours above and below",
+                                     "write left and right, or use a grid");
+                    }
+                    return neighbour(column, row, d.offset, e.span);
+                }
+            }
+            return e;
+        }
+        if (e.kind == ExprKind::kCall && e.path.steps.size() == 1 &&
+            e.path.steps[0].text == "count") {
+            if (e.args.size() != 1 || e.args[0].value.kind != ExprKind::kPath ||
+                !known(e.args[0].value.path)) {
+                return wrong(e.span, "count asks how many neighbours are in a state",
+                             "write count(" + states_[1].name.text + ")");
+            }
+            return count(column, row, e.args[0].value.path, e.span);
+        }
+        if (e.kind == ExprKind::kCall && e.path.steps.size() == 1 &&
+            e.path.steps[0].text == "cell") {
+            std::int64_t by[2] = {0, 0};
+            bool fine = e.args.size() == (flat_ ? 2u : 1u);
+            for (std::size_t i = 0; fine && i < e.args.size(); ++i) {
+                const auto n = literal_number(e.args[i].value);
+                fine = n && n->whole() && std::abs(n->numerator) <= kMostRadius;
+                by[i] = fine ? n->numerator : 0;
+            }
+            if (!fine) {
+                return wrong(e.span, "this is no cell nearby",
+                             flat_ ? "write cell(2, -1): two to the right, one up"
+                                   : "write cell(2): two to the right; cell(-2): to the left");
+            }
+            return neighbour(column, row, {static_cast<int>(by[0]), static_cast<int>(by[1])},
+                             e.span);
+        }
+        Expr out = e;
+        for (std::size_t i = 0; i < e.args.size(); ++i) {
+            out.args[i].value = read_at(e.args[i].value, column, row);
+        }
+        return out;
+    }
+
+    bool known(const lang::Path& path) const {
+        return path.steps.size() == 1 && find(path.steps[0].text) != nullptr;
+    }
+
+    static Expr choose(Expr condition, Expr yes, Expr no) {
+        Expr out;
+        out.kind = ExprKind::kConditional;
+        out.span = condition.span;
+        out.args.push_back({{}, std::move(condition)});
+        out.args.push_back({{}, std::move(yes)});
+        out.args.push_back({{}, std::move(no)});
+        return out;
+    }
+
+    Expr state_value(std::size_t state, lang::Span span) const {
+        return make_reference(states_[state].name.text, span);
+    }
+
+    // What the cell is in the next step: the first line that applies, else what it is.
+    Expr next(std::int64_t column, std::int64_t row) {
+        Expr me = neighbour(column, row, {}, block_.name.span);
+        if (wolfram_) {
+            return elementary(column, row);
+        }
+        Expr value = me;
+        for (std::size_t i = rules_.size(); i-- > 0;) {
+            const Rule& r = rules_[i];
+            Expr applies = make_binary(Op::kEqual, me, state_value(r.from, r.span));
+            if (r.when) {
+                applies = make_both(std::move(applies), read_at(r.when, column, row));
+            }
+            value = choose(std::move(applies), state_value(r.to, r.span), std::move(value));
+        }
+        return value;
+    }
+
+    // Bit 4 * left + 2 * me + right of the number, as a decision of at most seven questions.
+    // Source  S. Wolfram, "Statistical mechanics of cellular automata", Rev. Mod. Phys. 55 (1983).
+    Expr elementary(std::int64_t column, std::int64_t row) {
+        const lang::Span span = wolfram_span_;
+        const auto is_one = [&](int right) {
+            return make_binary(Op::kEqual, neighbour(column, row, {right, 0}, span),
+                               state_value(1, span));
+        };
+        const auto leaf = [&](std::int64_t bit) {
+            return state_value((*wolfram_ >> bit) & 1 ? 1 : 0, span);
+        };
+        const auto by_right = [&](std::int64_t high) {
+            return choose(is_one(1), leaf(high + 1), leaf(high));
+        };
+        const auto by_me = [&](std::int64_t high) {
+            return choose(is_one(0), by_right(high + 2), by_right(high));
+        };
+        return choose(is_one(-1), by_me(4), by_me(0));
+    }
+
+    // The figure of each cell, in the order of the cells: [ana, rui], or fan for fan[1], fan[2],
+    // ...
+    std::vector<lang::Path> figures() {
+        std::vector<lang::Path> out;
+        if (!figures_) {
+            return out;
+        }
+        if (figures_.kind == ExprKind::kList) {
+            for (const lang::Argument& a : figures_.args) {
+                if (a.value.kind != ExprKind::kPath) {
+                    teller_.error("syntax", a.value.span, "this is no figure",
+                                  "write the name of a member of the cast");
+                    return {};
+                }
+                out.push_back(a.value.path);
+            }
+        } else if (figures_.kind == ExprKind::kPath) {
+            for (std::int64_t row = 0; row < rows_; ++row) {
+                for (std::int64_t column = 0; column < columns_; ++column) {
+                    lang::Path path = figures_.path;
+                    path.steps.back() =
+                        cell_name(path.steps.back().text, column, row, figures_.span);
+                    out.push_back(std::move(path));
+                }
+            }
+        }
+        if (out.size() != cells_.size()) {
+            teller_.error("wrong-count", figures_.span,
+                          "there are " + std::to_string(cells_.size()) + " cells and " +
+                              std::to_string(out.size()) + " figures",
+                          "name a figure for each cell, in order");
+            return {};
+        }
+        return out;
+    }
+
+    void make() {
+        for (const State& s : states_) {
+            if (!s.entered && &s != &states_[0] && !wolfram_) {
+                teller_.warn("never-entered", s.span, "no cell is ever " + s.name.text,
+                             "add a line: ... -> " + s.name.text + ", or remove it");
+            }
+        }
+        if (!outside_.empty() && !state_of(outside_)) {
+            return;
+        }
+        const auto is_said = [](const lang::Property& p) { return is_rule(p); };
+        if (!wolfram_ &&
+            std::none_of(block_.properties.begin(), block_.properties.end(), is_said)) {
+            teller_.error("no-rule", block_.name.span, "no line says how cells change",
+                          "write " + std::string(kRuleForm));
+            return;
+        }
+        const lang::Span span = shape_span_;
+        lang::Enumeration states;
+        states.name = make_name("State", block_.name.span);
+        states.span = block_.name.span;
+        for (const State& s : states_) {
+            states.values.push_back(s.name);
+        }
+        body_.enumerations.push_back(std::move(states));
+        lang::Place clock = make_place(make_name("clock", period_.span));
+        clock.is_public = true;
+        clock.takes = make_duration(period_);
+        give_token(clock);
+        body_.places.push_back(std::move(clock));
+        lang::Transition step =
+            make_transition(make_name("step", period_.span), {make_path("clock", period_.span)},
+                            {make_path("clock", period_.span)});
+        step.is_public = true;
+        for (std::int64_t row = 0; row < rows_; ++row) {
+            for (std::int64_t column = 0; column < columns_; ++column) {
+                lang::Data cell;
+                cell.name = cell_name("cell", column, row, span);
+                cell.is_public = true;
+                cell.type = make_reference("State", span);
+                cell.initial = state_value(at(column, row), span);
+                cell.span = span;
+                body_.data.push_back(std::move(cell));
+                step.assignments.push_back(make_assignment(
+                    make_path({cell_name("cell", column, row, span)}, span), next(column, row)));
+            }
+        }
+        body_.transitions.push_back(std::move(step));
+        const std::vector<lang::Path> who = figures();
+        for (std::size_t i = 0; i < who.size(); ++i) {
+            figure(static_cast<std::int64_t>(i), who[i]);
+        }
+        if (who.empty() && !figures_) {
+            for (const State& s : states_) {
+                if (s.does) {
+                    teller_.error("no-figures", s.does.span, "the cells are no figures",
+                                  "write figures [ana, rui, ...], one for each cell");
+                    return;
+                }
+            }
+        }
+    }
+
+    std::size_t at(std::int64_t column, std::int64_t row) const {
+        return cells_[static_cast<std::size_t>(row * columns_ + column)];
+    }
+
+    static void give_name(Expr& e, const lang::Path& who) {
+        if (!e.path.empty() && e.path.steps[0].text == "me" && e.path.steps[0].index.empty()) {
+            lang::Path path = who;
+            path.span = e.path.span;
+            path.steps.insert(path.steps.end(), e.path.steps.begin() + 1, e.path.steps.end());
+            e.path = std::move(path);
+        }
+        for (lang::Argument& a : e.args) {
+            give_name(a.value, who);
+        }
+    }
+
+    // A place for each state, and a transition for each change that a line allows.
+    void figure(std::int64_t number, const lang::Path& who) {
+        const std::int64_t column = number % columns_, row = number / columns_;
+        const auto named = [&](const std::string& text, lang::Span span) {
+            return cell_name(text, column, row, span);
+        };
+        for (std::size_t s = 0; s < states_.size(); ++s) {
+            const State& state = states_[s];
+            lang::Place place = make_place(named(state.name.text, state.span));
+            place.is_public = true;
+            place.caption = captions_[s];
+            place.does = state.does;
+            place.takes = state.takes;
+            give_name(place.does, who);
+            if (at(column, row) == s) {
+                give_token(place);
+            }
+            body_.places.push_back(std::move(place));
+        }
+        std::map<std::pair<std::size_t, std::size_t>, lang::Span> changes;
+        for (const Rule& r : rules_) {
+            changes.emplace(std::pair(r.from, r.to), r.span);
+        }
+        if (wolfram_) {
+            changes = {{{0, 1}, wolfram_span_}, {{1, 0}, wolfram_span_}};
+        }
+        for (const auto& [change, span] : changes) {
+            if (change.first == change.second) {
+                continue;
+            }
+            const std::string& before = states_[change.first].name.text;
+            const std::string& after = states_[change.second].name.text;
+            lang::Transition t = make_transition(named(before + "_to_" + after, span), {},
+                                                 {make_path({named(after, span)}, span)});
+            t.inputs.push_back(
+                make_arc(lang::ArcKind::kTakeNow, make_path({named(before, span)}, span)));
+            t.guard = make_binary(Op::kEqual, neighbour(column, row, {}, span),
+                                  state_value(change.second, span));
+            t.priority = make_number(Rational{kFollows + number % kOrders}, span);
+            t.is_public = true;
+            t.span = span;
+            body_.transitions.push_back(std::move(t));
+        }
+    }
+
+    const lang::Block& block_;
+    Teller teller_;
+    lang::Body& body_;
+    std::int64_t columns_ = 0, rows_ = 1;
+    bool wraps_ = false, flat_ = false, diamond_ = false;
+    int radius_ = 1;
+    int errors_ = 0;
+    Expr period_, figures_;
+    lang::Path outside_;
+    lang::Span shape_span_{}, wolfram_span_{};
+    std::optional<std::int64_t> wolfram_;
+    std::vector<State> states_;
+    std::vector<lang::Caption> captions_;  // by state
+    std::vector<Rule> rules_;
+    std::vector<std::size_t> cells_;  // the state of each at the start, row by row
+};
+
+}  // namespace
+
+void lower_cells(const lang::Block& block, const lang::File& file, Lowered& out) {
+    Cells(block, file, out).lower();
+}
+
+}  // namespace puppetri::notation
