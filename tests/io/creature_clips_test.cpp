@@ -50,7 +50,7 @@ class Files final : public scene::FileSource {
 // All distances between joints of a figure and of the nodes, in the same proportion throughout.
 void moves_as_nodes(const char* file, const char* take, double height_m) {
     CAPTURE(file);
-    Files files("language 1\nscene \"s\"\nuntil 2 s\ncast { me: creature { file \"" + kMotion +
+    Files files("language 1\nscene \"s\"\nuntil 5 s\ncast { me: creature { file \"" + kMotion +
                 file + "\", height " + std::to_string(height_m) + " m } }\nclip c { from \"" +
                 kMotion + file + "\", take \"" + take +
                 "\" }\nplace p does me.c() tokens 1\nend { p }\n");
@@ -98,7 +98,7 @@ void moves_as_nodes(const char* file, const char* take, double height_m) {
                 if (scale == 0 && theirs > 1e-3) {
                     scale = ours / theirs;
                 }
-                REQUIRE(ours == doctest::Approx(theirs * scale).epsilon(1e-3).scale(height_m));
+                REQUIRE(ours == doctest::Approx(theirs * scale).epsilon(1e-5).scale(height_m));
             }
         }
     }
