@@ -13,8 +13,8 @@ endfunction()
 set(PUPPETRI_MAY_THROW lang io render)
 
 # What those who embed Puppetri ask for by name, each part of the next.
-set(PUPPETRI_MODULES_net base net run)
-set(PUPPETRI_MODULES_stage ${PUPPETRI_MODULES_net} math figure motion stage)
+set(PUPPETRI_MODULES_net base math net run)
+set(PUPPETRI_MODULES_stage ${PUPPETRI_MODULES_net} figure motion stage)
 
 file(STRINGS "${CMAKE_CURRENT_SOURCE_DIR}/layers.txt" rows REGEX "^[a-z]+:")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/layers.txt")
