@@ -23,11 +23,13 @@ class Carry final : public Movement {
     Carry(const MotionContext& given, const CarrySpec& spec)
         : figure_(given.figure), radius_m_(spec.radius_m), held_(spec.held) {
         const MotionContext context = arms_in_chest_space(given);
+        // Hands that have opened come back to what they still have.
+        held_ = held_ && hands_hold(context, radius_m_);
         limbs = kBothArms;
         duration = duration_of(context, spec.duration_s);
         at_s_ = context.at.seconds();
         rest_ = carried_ball_chest(figure_, radius_m_);
-        if (spec.held) {
+        if (held_) {
             const HeldBall ball = held_ball(context, radius_m_);
             if (spec.stay) {
                 rest_ = ball.chest_from_ball;

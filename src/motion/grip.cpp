@@ -61,6 +61,21 @@ HeldBall held_ball(const MotionContext& context, double radius_m) {
     return held;
 }
 
+bool hands_hold(const MotionContext& context, double radius_m) {
+    constexpr double kOff_m = 0.015;
+    Controls laid = context.now;
+    lay_hands(context.figure, held_ball(context, radius_m).chest_from_ball, radius_m, 0, laid);
+    const Transform chest_from_world = inverse(world_from_chest(context.figure, context.now));
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+        const Vec3 hand =
+            chest_from_world * world_from_hand(context.figure, context.now, side).translation;
+        if (length(hand - laid.arms[index_of(side)].chest_from_hand.translation) > kOff_m) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void lay_hands(const figure::Figure& figure, const Transform& chest_from_ball, double radius_m,
                double gap_m, Controls& out) {
     for (const Side side : {Side::kLeft, Side::kRight}) {

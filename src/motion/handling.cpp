@@ -246,7 +246,14 @@ HandOver meeting_of(const figure::Figure& giver, const Controls& from, const fig
     const double apart = length(Vec3{b.x - a.x, 0, b.z - a.z});
     const double reach =
         giver.arms[0].upper_m + giver.arms[0].fore_m + taker.arms[0].upper_m + taker.arms[0].fore_m;
-    return {meeting, apart > 0.5 && apart < 0.95 * reach};
+    constexpr double kBefore_rad = radians(40);
+    const auto faces = [&](const figure::Figure& figure, const Controls& c, Vec3 way) {
+        return std::fabs(turn_between(heading_of(way),
+                                      heading_of(pelvis_over_feet(figure, c).rotation_world))) <
+               kBefore_rad;
+    };
+    return {meeting, apart > 0.5 && apart < 0.95 * reach && faces(giver, from, b - a) &&
+                         faces(taker, to, a - b)};
 }
 
 MovementPtr make_give(const MotionContext& context, const GiveSpec& spec) {

@@ -27,7 +27,7 @@ constexpr double kLongest = 0.985;  // part of a leg's length that the hips are 
 // The pitch of the feet when they leave and land; heels up.
 constexpr Motion1 kOff{-kHeelUp_rad, -5, 0}, kOn{-0.8 * kHeelUp_rad, 3.6, 0};
 
-double height_of(double height_m) { return clamp(height_m, 0.02, 0.6); }
+double height_of(double height_m) { return clamp(height_m, 0.02, kHighestJump_m); }
 
 class Jump final : public Movement {
  public:
@@ -97,10 +97,10 @@ class Jump final : public Movement {
                         {given_s, {-0.8 * deep, 0, 4}},
                         {up_s, {}}});
         back_ = Curve1({{0, {}},
-                        {crouch_s, {-0.5 * deep, 0, 0}},
-                        {leaves_s_, {}},
-                        {lands_s_, {}},
-                        {given_s, {-0.45 * deep, 0, 0}},
+                        {crouch_s, {-0.75 * deep, 0, 0}},
+                        {leaves_s_, {-0.15 * deep, 1.5 * deep, 0}},
+                        {lands_s_, {-0.25 * deep, -1.5 * deep, 0}},
+                        {given_s, {-0.75 * deep, 0, 0}},
                         {up_s, {}}});
         const double lean = 2.6 * deep / h;
         lean_ = Curve1({{0, {}},
@@ -160,7 +160,7 @@ class Jump final : public Movement {
         pitch.push_back({leaves_s_, kOff});
         pitch.push_back({leaves_s_ + 0.5 * flight, {-kToesDown_rad, 0, 0}});
         pitch.push_back({lands_s_, kOn});
-        pitch.push_back({lands_s_ + 0.18, {}});
+        pitch.push_back({lands_s_ + 0.26, {}});
         foot.set_pitch(Curve1(std::move(pitch)));
         const Motion3 from = ankle_on_print(figure_, side, landing.print, kOff);
         const Motion3 to = ankle_on_print(figure_, side, landing.print, kOn);

@@ -633,6 +633,10 @@ Prepared Preparer::run() {
         whole(make_stand_up(context_, {}));
     } else if (name == "jump") {
         tell_seated();
+        if (arguments_.number("height") > kHighestJump_m + 1e-9) {
+            note("high-jump", "nobody jumps higher than 50 cm from the stand: it jumps that high",
+                 "write a height of at most 50 cm");
+        }
         whole(make_jump(context_, {.height_m = arguments_.number("height")}));
     } else if (name == "wave") {
         whole(make_wave(context_, {.side = arguments_.side("side"),

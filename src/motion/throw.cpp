@@ -33,6 +33,7 @@ class Throw final : public Movement {
           target_(spec.target_world),
           flight_s_(spec.flight_s) {
         const MotionContext context = arms_in_chest_space(given);
+        held_ = held_ && hands_hold(context, radius_m_);
         limbs = kAllLimbs;
         duration = duration_of(context, spec.duration_s);
         release_s_ = std::fmax(duration.seconds(), 0.05);

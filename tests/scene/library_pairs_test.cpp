@@ -120,8 +120,8 @@ TEST_CASE("library movements keep limits, floor and planted feet, and are not to
         slow(m.spine, runs ? 5 : 3, 400, "spine");
         slow(m.arm, 20, 1500, "arm");
     };
-    for (const char* call :
-         {"bow(deep: 60 deg)", "wave(2, left)", "eat()", "sit(0.4 m)", "jump(15 cm)", "jump()"}) {
+    for (const char* call : {"bow(deep: 60 deg)", "wave(2, left)", "eat()", "sit(0.4 m)",
+                             "jump(5 cm)", "jump()", "jump(35 cm)", "jump(50 cm)"}) {
         look(call);
     }
 }

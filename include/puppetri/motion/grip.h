@@ -28,6 +28,9 @@ struct HeldBall {
 };
 HeldBall held_ball(const MotionContext& context, double radius_m);
 
+// Whether both hands are where a ball between them would have them.
+bool hands_hold(const MotionContext& context, double radius_m);
+
 // Lays both hands on the ball (with the gap) and opens the fingers; writes both arms.
 void lay_hands(const figure::Figure& figure, const Transform& chest_from_ball, double radius_m,
                double gap_m, Controls& out);

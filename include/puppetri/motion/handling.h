@@ -23,7 +23,7 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec);
 // Where two who stand before each other hand over a ball: between them, at the height of the belly.
 struct HandOver {
     Vec3 meeting_world = {};
-    bool near = true;  // false: they stand too far apart, or too near
+    bool near = true;  // false: too far apart, or too near, or not before each other
 };
 HandOver meeting_of(const figure::Figure& giver, const Controls& from, const figure::Figure& taker,
                     const Controls& to);
