@@ -27,6 +27,7 @@ class Packed final : public Doer {
           local_(kMostMembers, motion::PackedPose(skeleton_)),
           model_(local_),
           scratch_{motion::PackedPose(skeleton_), motion::PackedPose(skeleton_)},
+          tree_(skeleton_),
           crowd_(kMostMembers),
           matrices_(std::size_t{12} * skeleton_.joint_count() * kMostMembers) {}
 
@@ -44,8 +45,9 @@ class Packed final : public Doer {
                         break;
                     case Work::kTreeMatrices: {
                         const std::size_t size = std::size_t{12} * skeleton_.joint_count();
-                        motion::to_model_space(skeleton_, local_[i], model_[i]);
-                        motion::to_matrices(skeleton_, model_[i],
+                        // The tree is on the way only: one pose serves all.
+                        motion::to_model_space(skeleton_, local_[i], tree_);
+                        motion::to_matrices(skeleton_, tree_,
                                             std::span(matrices_).subspan(i * size, size));
                         break;
                     }
@@ -72,6 +74,7 @@ class Packed final : public Doer {
     motion::PackedClip a_, b_;
     std::vector<motion::PackedPose> local_, model_;
     std::array<motion::PackedPose, 2> scratch_;
+    motion::PackedPose tree_;
     std::vector<motion::CrowdMember> crowd_;
     std::vector<float> matrices_;
     int round_ = 0;

@@ -5,6 +5,8 @@
 // stand in for one that must run on all.
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 
 #include "puppetri/base/simd_float.h"
 #include "puppetri/motion/packed_clip.h"
@@ -21,6 +23,9 @@ struct PackedKernels {
                   std::size_t stride, float* out);
     void (*to_model)(const PackedSkeleton::Run* runs, std::size_t run_count, std::size_t stride,
                      const float* local, float* out);
+    // Matrices of 12 floats of a pose in model space: that of slot i at matrices + 12 joint_of[i].
+    void (*to_matrices)(const float* model, std::size_t stride, const std::uint32_t* joint_of,
+                        std::size_t joints, float* matrices);
 };
 extern const PackedKernels kKernels1, kKernels4;
 #if defined(PUPPETRI_MOTION_AVX2)
@@ -170,9 +175,57 @@ void to_model_kernel(const PackedSkeleton::Run* runs, std::size_t run_count, std
     }
 }
 
+// The matrix of lane I; unrolled, so that the rows stay in registers.
+template <std::size_t I, class F>
+[[gnu::always_inline]] inline void store_one(const F (&rows)[3][4], const std::uint32_t* joint_of,
+                                             std::size_t joints, float* matrices) {
+    if (I < joints) {
+        float* m = matrices + 12 * std::size_t{joint_of[I]};
+        rows[0][I % 4].store_four(I / 4, m);
+        rows[1][I % 4].store_four(I / 4, m + 4);
+        rows[2][I % 4].store_four(I / 4, m + 8);
+    }
+}
+template <class F, std::size_t... I>
+[[gnu::always_inline]] inline void store_each(const F (&rows)[3][4], const std::uint32_t* joint_of,
+                                              std::size_t joints, float* matrices,
+                                              std::index_sequence<I...>) {
+    (store_one<I>(rows, joint_of, joints, matrices), ...);
+}
+
+template <class F>
+void to_matrices_kernel(const float* model, std::size_t stride, const std::uint32_t* joint_of,
+                        std::size_t joints, float* matrices) {
+    const F one = F::all(1);
+    for (std::size_t slot = 0; slot < joints; slot += F::kLanes) {
+        const Seven<F> s = load_seven<F>(model + slot, stride);
+        const Rotation<F>& q = s.q;
+        const F x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+        F rows[3][4] = {{one - (q.y * y2 + q.z * z2), q.x * y2 + q.w * z2, q.x * z2 - q.w * y2,
+                         q.x * y2 - q.w * z2},
+                        {one - (q.x * x2 + q.z * z2), q.y * z2 + q.w * x2, q.x * z2 + q.w * y2,
+                         q.y * z2 - q.w * x2},
+                        {one - (q.x * x2 + q.y * y2), s.tx, s.ty, s.tz}};
+        if constexpr (F::kLanes == 1) {
+            float* m = matrices + 12 * std::size_t{joint_of[slot]};
+            for (const F(&row)[4] : rows) {
+                for (const F& part : row) {
+                    part.store(m++);
+                }
+            }
+        } else {
+            for (F(&row)[4] : rows) {
+                transpose(row);
+            }
+            store_each(rows, joint_of + slot, joints - slot, matrices,
+                       std::make_index_sequence<F::kLanes>{});
+        }
+    }
+}
+
 template <class F>
 constexpr PackedKernels kernels_of() {
-    return {sample_kernel<F>, blend_kernel<F>, to_model_kernel<F>};
+    return {sample_kernel<F>, blend_kernel<F>, to_model_kernel<F>, to_matrices_kernel<F>};
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ PackedSkeleton::PackedSkeleton(const figure::Skeleton& skeleton) {
         for (std::uint32_t j = 0; j < n; ++j) {
             if (level[j] == l) {
                 slot_of_[j] = static_cast<std::uint32_t>(joint_of_.size());
-                joint_of_.push_back({j});
+                joint_of_.push_back(j);
             }
         }
         level_begin.push_back(static_cast<std::uint32_t>(joint_of_.size()));
@@ -137,32 +137,12 @@ void to_model_space(const PackedSkeleton& skeleton, const PackedPose& local, Pac
                             out.component(0));
 }
 
-void to_matrices(const PackedSkeleton& skeleton, const PackedPose& pose, std::span<float> out) {
-    const std::uint32_t n = skeleton.joint_count();
-    PUP_REQUIRE(pose.stride() == skeleton.stride() && out.size() == std::size_t{12} * n);
-    // Four slots at once; the strides leave room for lanes behind the last.
-    using simd::Float4;
-    const Float4 one = Float4::all(1);
-    const auto at = [&](int component, std::uint32_t slot) {
-        return Float4::load(pose.component(component) + slot);
-    };
-    for (std::uint32_t slot = 0; slot < n; slot += 4) {
-        const Float4 x = at(0, slot), y = at(1, slot), z = at(2, slot), w = at(3, slot);
-        const Float4 x2 = x + x, y2 = y + y, z2 = z + z;
-        Float4 rows[3][4] = {
-            {one - (y * y2 + z * z2), x * y2 + w * z2, x * z2 - w * y2, x * y2 - w * z2},
-            {one - (x * x2 + z * z2), y * z2 + w * x2, x * z2 + w * y2, y * z2 - w * x2},
-            {one - (x * x2 + y * y2), at(4, slot), at(5, slot), at(6, slot)}};
-        for (Float4(&row)[4] : rows) {
-            transpose(row);
-        }
-        for (std::uint32_t i = 0; i < 4 && slot + i < n; ++i) {
-            float* m = &out[std::size_t{12} * skeleton.joint_of(slot + i).value];
-            rows[0][i].store(m);
-            rows[1][i].store(m + 4);
-            rows[2][i].store(m + 8);
-        }
-    }
+void to_matrices(const PackedSkeleton& skeleton, const PackedPose& model, std::span<float> out,
+                 Lanes lanes) {
+    PUP_REQUIRE(model.stride() == skeleton.stride() &&
+                out.size() == std::size_t{12} * skeleton.joint_count());
+    kernels(lanes).to_matrices(model.component(0), skeleton.stride(), skeleton.joints_of_slots(),
+                               skeleton.joint_count(), out.data());
 }
 
 void pose_crowd(const PackedSkeleton& skeleton, std::span<const CrowdMember> members,

@@ -180,16 +180,21 @@ TEST_CASE("every width gets the same bits [law]") {
         const double t = real(0, 2), u = real(0, 2);
         const float weight = static_cast<float>(real(0, 1));
         PackedPose reference(packed);
+        std::vector<float> reference_matrices, matrices(std::size_t{12} * packed.joint_count());
         for (const Lanes lanes : {Lanes::k1, Lanes::k4, Lanes::k8}) {
             PackedPose p(packed), q(packed), mixed(packed), model(packed);
             a.sample(t, p, lanes);
             b.sample(u, q, lanes);
             blend(p, q, weight, mixed, lanes);
             to_model_space(packed, mixed, model, lanes);
+            to_matrices(packed, model, matrices, lanes);
             if (lanes == Lanes::k1) {
                 reference = model;
+                reference_matrices = matrices;
             } else {
                 REQUIRE(same_bits(reference, model, packed.joint_count()));
+                REQUIRE(std::memcmp(reference_matrices.data(), matrices.data(),
+                                    matrices.size() * sizeof(float)) == 0);
             }
         }
     }

@@ -5,6 +5,7 @@
 // specified, and nothing is fused.
 #pragma once
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -48,6 +49,7 @@ struct Float4 {
     }
     static Float4 all(float x) { return {Vector{x, x, x, x}}; }
     void store(float* to) const { __builtin_memcpy(to, &v, sizeof v); }
+    void store_four(std::size_t, float* to) const { store(to); }
     static Float4 gather(const float* from, const std::int32_t* index) {
         return {Vector{from[index[0]], from[index[1]], from[index[2]], from[index[3]]}};
     }
@@ -87,6 +89,10 @@ struct Float8 {
     static Float8 load(const float* from) { return {_mm256_loadu_ps(from)}; }
     static Float8 all(float x) { return {_mm256_set1_ps(x)}; }
     void store(float* to) const { _mm256_storeu_ps(to, v); }
+    // The lower (0) or the upper (1) four lanes.
+    void store_four(std::size_t half, float* to) const {
+        _mm_storeu_ps(to, half == 0 ? _mm256_castps256_ps128(v) : _mm256_extractf128_ps(v, 1));
+    }
     static Float8 gather(const float* from, const std::int32_t* index) {
         return {_mm256_setr_ps(from[index[0]], from[index[1]], from[index[2]], from[index[3]],
                                from[index[4]], from[index[5]], from[index[6]], from[index[7]])};
@@ -102,6 +108,16 @@ struct Float8 {
     friend Float8 operator*(Float8 a, Float8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
     friend Float8 operator/(Float8 a, Float8 b) { return {_mm256_div_ps(a.v, b.v)}; }
     friend Float8 operator-(Float8 a) { return {_mm256_xor_ps(a.v, _mm256_set1_ps(-0.0f))}; }
+    // Four rows of eight become columns, each half by itself: the lower four lanes of r[i] are
+    // column i, the upper ones column i + 4.
+    friend void transpose(Float8 (&r)[4]) {
+        const __m256 a = _mm256_unpacklo_ps(r[0].v, r[1].v), b = _mm256_unpackhi_ps(r[0].v, r[1].v),
+                     c = _mm256_unpacklo_ps(r[2].v, r[3].v), d = _mm256_unpackhi_ps(r[2].v, r[3].v);
+        r[0].v = _mm256_shuffle_ps(a, c, 0x44);
+        r[1].v = _mm256_shuffle_ps(a, c, 0xee);
+        r[2].v = _mm256_shuffle_ps(b, d, 0x44);
+        r[3].v = _mm256_shuffle_ps(b, d, 0xee);
+    }
     friend Float8 sqrt(Float8 a) { return {_mm256_sqrt_ps(a.v)}; }
     friend Float8 where_negative(Float8 x, Float8 a, Float8 b) {
         return {_mm256_blendv_ps(b.v, a.v, _mm256_cmp_ps(x.v, _mm256_setzero_ps(), _CMP_LT_OQ))};

@@ -30,7 +30,8 @@ class PackedSkeleton {
 
     std::uint32_t joint_count() const { return static_cast<std::uint32_t>(joint_of_.size()); }
     std::uint32_t slot_of(figure::JointIndex joint) const { return slot_of_[joint.value]; }
-    figure::JointIndex joint_of(std::uint32_t slot) const { return joint_of_[slot]; }
+    figure::JointIndex joint_of(std::uint32_t slot) const { return {joint_of_[slot]}; }
+    const std::uint32_t* joints_of_slots() const { return joint_of_.data(); }
     // Floats from one component of a pose to the next.
     std::uint32_t stride() const { return stride_; }
 
@@ -46,8 +47,7 @@ class PackedSkeleton {
     std::uint32_t root_count() const { return roots_; }  // the first slots have no parent
 
  private:
-    std::vector<figure::JointIndex> joint_of_;
-    std::vector<std::uint32_t> slot_of_;
+    std::vector<std::uint32_t> joint_of_, slot_of_;
     std::vector<Run> runs_1_, runs_4_, runs_8_;
     std::uint32_t stride_ = 0, roots_ = 0;
 };
@@ -134,8 +134,9 @@ void to_model_space(const PackedSkeleton& skeleton, const PackedPose& local, Pac
                     Lanes lanes = widest_lanes());
 
 // Matrices for skinning, column after column (12 floats: three columns of the rotation, then the
-// translation), by joint of the skeleton.
-void to_matrices(const PackedSkeleton& skeleton, const PackedPose& pose, std::span<float> out);
+// translation), by joint of the skeleton, of a pose in model space.
+void to_matrices(const PackedSkeleton& skeleton, const PackedPose& model, std::span<float> out,
+                 Lanes lanes = widest_lanes());
 
 // One figure of a crowd: what it plays. With a second clip it plays a blend of both.
 struct CrowdMember {
