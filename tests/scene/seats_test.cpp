@@ -48,7 +48,7 @@ struct Played {
 // The calls one after the other, in places p0, p1, ...
 Played play(const std::string& figure, double height_m, const std::vector<std::string>& calls,
             const std::string& cast = "") {
-    std::string text = "language 1\nscene \"s\"\nuntil 100 s\ncast {\n ana: mannequin { height " +
+    std::string text = "language 1\nscene \"s\"\nuntil 40 s\ncast {\n ana: mannequin { height " +
                        std::to_string(height_m) + " m, " + figure + " }\n" + cast + "}\n";
     for (std::size_t k = 0; k < calls.size(); ++k) {
         text += "place p" + std::to_string(k) + " does ana." + calls[k] +
