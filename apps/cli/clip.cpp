@@ -304,7 +304,8 @@ int run(const Arguments& arguments) {
             return kBadInput;
         }
     }
-    if (!out.empty() && !carry_onto(*file, arguments, writing->rate_hz)) {
+    if (!out.empty() && (!carry_onto(*file, arguments, writing->rate_hz) ||
+                         !rename_bones(*file, arguments, out, writing->names))) {
         return kBadInput;
     }
     if (out.empty()) {

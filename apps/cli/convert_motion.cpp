@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <set>
 
 #include "puppetri/base/frame_rate.h"
 #include "puppetri/base/text.h"
@@ -165,6 +167,57 @@ bool carry_onto(io::ClipFile& file, const Arguments& arguments, double rate_hz) 
     return true;
 }
 
+bool rename_bones(io::ClipFile& file, const Arguments& arguments, const std::string& out,
+                  io::BoneNames set) {
+    if (!arguments.given("--names") || file.skeleton.joints.empty()) {
+        return true;  // without joints the mannequin's are written, with these names
+    }
+    std::map<std::string, std::string> names;
+    std::set<std::string> wanted{"hips", "head", "leftUpperLeg", "rightUpperLeg"};
+    for (const figure::FoundBone& bone : io::find_bones(file.skeleton)) {
+        wanted.erase(bone.bone);
+        // Writers of other formats turn VRM's names into those of the set.
+        const bool keys = io::clip_format_of(out) == io::ClipFormat::kKeys;
+        names[file.skeleton.joints[bone.joint.value].name] =
+            keys ? io::bone_name(set, bone.bone) : bone.bone;
+    }
+    if (!wanted.empty()) {
+        say_error("--names: " + arguments.text("in") +
+                  " is no humanoid: no joint of it is known as " + *wanted.begin() +
+                  "; leave --names out");
+        return false;
+    }
+    const auto rename = [&](std::string& name) {
+        if (const auto found = names.find(name); found != names.end()) {
+            name = found->second;
+        }
+    };
+    for (figure::Joint& joint : file.skeleton.joints) {
+        const bool clash = names.count(joint.name) == 0 &&
+                           std::any_of(names.begin(), names.end(),
+                                       [&](const auto& n) { return n.second == joint.name; });
+        if (clash) {
+            say_error("--names: " + arguments.text("in") + " has a joint " + joint.name +
+                      " that is another bone; leave --names out");
+            return false;
+        }
+        rename(joint.name);
+    }
+    for (motion::Clip& clip : file.clips) {
+        rename(clip.root);
+        for (auto& track : clip.rotations) {
+            rename(track.target);
+        }
+        for (auto& track : clip.translations) {
+            rename(track.target);
+        }
+        for (motion::ClipMark& mark : clip.marks) {
+            rename(mark.target);
+        }
+    }
+    return true;
+}
+
 int write_motion(const std::string& path, const io::ClipFile& file,
                  const io::ClipWriteOptions& options, bool json) {
     Diagnostics notes;
@@ -248,7 +301,8 @@ int convert_motion(const Arguments& arguments) {
     if (!keep_clips(*file, arguments.texts("--clip"))) {
         return kBadInput;
     }
-    if (!carry_onto(*file, arguments, writing->rate_hz)) {
+    if (!carry_onto(*file, arguments, writing->rate_hz) ||
+        !rename_bones(*file, arguments, arguments.text("out"), writing->names)) {
         return kBadInput;
     }
     return write_motion(arguments.text("out"), *file, *writing, arguments.given("--json"));

@@ -25,6 +25,11 @@ bool keep_clips(io::ClipFile& file, const std::vector<std::string>& names);
 // false.
 bool carry_onto(io::ClipFile& file, const Arguments& arguments, double rate_hz);
 
+// With --names: joints that are bones of a humanoid, and their tracks, get the names of that set in
+// the file `out`. Says what is wrong, and gives false.
+bool rename_bones(io::ClipFile& file, const Arguments& arguments, const std::string& out,
+                  io::BoneNames set);
+
 // Writes the file and tells it, as JSON where that is wanted; gives the exit code.
 int write_motion(const std::string& path, const io::ClipFile& file,
                  const io::ClipWriteOptions& options, bool json);

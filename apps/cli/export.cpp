@@ -91,7 +91,10 @@ std::vector<std::string> read_options(const Arguments& arguments, Plan& plan) {
     plan.take.loop = arguments.given("--loop");
     plan.root_given = arguments.given("--root");
     plan.take.root = static_cast<io::RootMode>(choose("--root", {"motion", "in-place", "hips"}));
-    plan.take.rest = static_cast<io::RestPose>(choose("--rest", {"t", "a"}));
+    if (arguments.given("--rest")) {
+        plan.take.rest = static_cast<io::RestPose>(choose("--rest", {"t", "a"}));
+    }
+    plan.take.bone_names = arguments.given("--names");
     plan.clips = choose("--clips", {"whole", "per-movement"}) == 1;
     plan.gltf.names =
         static_cast<io::BoneNames>(choose("--names", {"vrm", "mixamo", "unreal", "rigify"}));
@@ -324,9 +327,11 @@ Command export_command() {
              {"--clips", Value::kText, "HOW", "whole (default) or per-movement"},
              {"--root", Value::kText, "MODE",
               "motion (default), in-place, or hips (default for BVH)"},
-             {"--rest", Value::kText, "POSE", "rest pose: t (default) or a"},
+             {"--rest", Value::kText, "POSE",
+              "rest pose of humanoids: t or a (default: t, of characters that of their file)"},
              {"--names", Value::kText, "SET",
-              "bones named as in vrm (default), mixamo, unreal or rigify"},
+              "bones named as in vrm, mixamo, unreal or rigify (default: vrm, of characters as in "
+              "their file)"},
              {"--unit", Value::kText, "UNIT", "lengths in BVH: cm (default) or m"},
              {"--reduce", Value::kFlag, "", "glTF: leave out keys that interpolation gives back"},
              {"--tolerance", Value::kText, "MM",

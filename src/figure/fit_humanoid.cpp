@@ -117,7 +117,9 @@ class Fit {
         const auto need = [&](const std::string& bone) {
             if (!has(bone)) {
                 defect("no-bone", bone, "the character has no " + language_bone(bone),
-                       "name its joint: `bones { " + language_bone(bone) + ": \"...\" }`");
+                       "name its joint: `bones { " + language_bone(bone) +
+                           ": \"...\" }`; or let it be a `creature`, which plays clips of its "
+                           "own joints");
             }
         };
         need("hips");

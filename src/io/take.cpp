@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "character_rest.h"
 #include "held_props.h"
 #include "period.h"
 #include "rest_pose.h"
@@ -121,15 +122,25 @@ class ActorSampler {
     }
 
     // Skeleton and mesh, no keys yet.
-    TakeActor actor(RestPose rest, SimTime end) {
+    TakeActor actor(const TakeOptions& options, SimTime end) {
         const stage::ActorView& view = performance_.actors()[actor_];
         TakeActor actor;
         actor.name = view.name;
-        const bool a_pose = rest == RestPose::kA && !view.own_rest;
-        actor.skeleton = a_pose ? with_a_pose(*view.skeleton) : *view.skeleton;
+        const figure::Character* character = view.character;
+        const bool humanoid = character != nullptr && character->humanoid.has_value();
+        actor.skeleton = *view.skeleton;
+        if (options.rest && humanoid) {
+            actor.skeleton = with_rest(*character, *options.rest == RestPose::kA);
+        } else if (options.rest == RestPose::kA && character == nullptr) {
+            actor.skeleton = with_a_pose(*view.skeleton);
+        }
         actor.hips = hips_;
         if (view.mesh != nullptr) {
-            actor.mesh = a_pose ? rebound(*view.mesh, *view.skeleton, actor.skeleton) : *view.mesh;
+            const bool moved = options.rest && (humanoid || options.rest == RestPose::kA);
+            actor.mesh = moved ? rebound(*view.mesh, *view.skeleton, actor.skeleton) : *view.mesh;
+        }
+        if (options.bone_names && humanoid) {
+            name_bones(*character, actor.skeleton);
         }
         performance_.pose({actor_}, start_ + end, pose_);
         actor.root_delta = inverse(world_first_root_) * pose_.parent_from_joint[0];
@@ -152,7 +163,8 @@ class ActorSampler {
     SimTime start_;
     // Who does not tell has them by their name.
     static figure::JointIndex hips_of(const stage::ActorView& view) {
-        return view.hips.valid() || view.own_rest ? view.hips : view.skeleton->find("hips");
+        return view.hips.valid() || view.character != nullptr ? view.hips
+                                                              : view.skeleton->find("hips");
     }
 
     RootMode mode_ = RootMode::kMotion;
@@ -161,8 +173,9 @@ class ActorSampler {
     figure::Pose pose_;
 };
 
-TakeActor sample_actor(ActorSampler& sampler, RestPose rest, std::span<const SimTime> times) {
-    TakeActor actor = sampler.actor(rest, times.back());
+TakeActor sample_actor(ActorSampler& sampler, const TakeOptions& options,
+                       std::span<const SimTime> times) {
+    TakeActor actor = sampler.actor(options, times.back());
     actor.parent_from_joint.reserve(times.size() * actor.skeleton.joints.size());
     for (const SimTime at : times) {
         const auto pose = sampler.sample(at);
@@ -287,7 +300,7 @@ Checked<Take> sample_take(const stage::Performance& performance, const TakeOptio
     std::vector<ActorSampler> samplers;
     for (std::uint32_t a = 0; a < performance.actors().size(); ++a) {
         samplers.emplace_back(performance, a, start, false, options);
-        take.actors.push_back(sample_actor(samplers.back(), options.rest, take.times));
+        take.actors.push_back(sample_actor(samplers.back(), options, take.times));
     }
     for (std::uint32_t p = 0; p < performance.props().size(); ++p) {
         take.props.push_back(sample_prop(performance, p, start, take.times));
@@ -352,7 +365,7 @@ Checked<std::vector<Take>> sample_clips(const stage::Performance& performance,
             fill_times(take, performance, entry->start, std::move(frames), options.keys_at_events,
                        actors[a].name);
             ActorSampler sampler(performance, a, entry->start, true, options);
-            take.actors.push_back(sample_actor(sampler, options.rest, take.times));
+            take.actors.push_back(sample_actor(sampler, options, take.times));
             clips.push_back(std::move(take));
         }
     }

@@ -125,8 +125,7 @@ class TakePerformance final : public Performance {
     void show_character(const Actor& actor) {
         const figure::Character& c = *actor.character;
         actor_views_.push_back({actor.name, &c.skeleton, &c.mesh,
-                                c.humanoid ? c.humanoid->rig.raw_hips : figure::JointIndex{},
-                                true});
+                                c.humanoid ? c.humanoid->rig.raw_hips : figure::JointIndex{}, &c});
     }
 
     SimTime inside(SimTime at) const { return std::clamp(at, SimTime{0}, take_.end); }

@@ -469,6 +469,22 @@ class Prove(Cli):
 class Motion(Cli):
     CORPUS = ROOT / "tests/corpus/motion"
 
+    def test_bones_get_the_names_of_another_program(self):
+        joints = [("Hips", None), ("Spine", "Hips"), ("Neck", "Spine"), ("Head", "Neck"), ("Tail", "Hips")]
+        for side in ("Left", "Right"):
+            joints += [(side + "UpLeg", "Hips"), (side + "Leg", side + "UpLeg"), (side + "Foot", side + "Leg")]
+        own = self.path / "own.keys"
+        own.write_text("keys 1\n" + "".join(f"joint {name} {above or '-'} 0 0.1 0\n" for name, above in joints) +
+                       "clip a lasts 1\nrotation LeftUpLeg degrees\n  0 0 0 0\n  1 10 0 0\n")
+        for ending in ("bvh", "keys"):
+            out = self.path / ("named." + ending)
+            done = run("convert", own, out, "--names", "unreal")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            text = out.read_text()
+            for name in ("pelvis", "thigh_l", "calf_r", "foot_l", "head", "Tail"):
+                self.assertIn(name, text)
+            self.assertNotIn("LeftUpLeg", text)
+
     def test_motion_is_converted_edited_and_told(self):
         bvh, glb, keys = self.path / "a.bvh", self.path / "a.glb", self.path / "b.keys"
         done = run("convert", self.CORPUS / "walk.keys", bvh, "--clip", "walk", "--json")
@@ -512,7 +528,9 @@ class Motion(Cli):
         cut.write_bytes(whole[:-40])
         self.assertEqual(run("convert", cut, out).returncode, 2)
         self.assertFalse(out.exists())
-        for arguments in (["convert", self.CORPUS / "dance.bvh", out, "--scale", "0"],
+        # Who is no humanoid has no bones that other programs name.
+        for arguments in (["convert", self.CORPUS / "wave.glb", out, "--names", "mixamo"],
+                          ["convert", self.CORPUS / "dance.bvh", out, "--scale", "0"],
                           ["convert", self.CORPUS / "dance.bvh", out, "--clip", "nobody"],
                           ["convert", self.CORPUS / "dance.bvh", self.path / "a.vrma"],
                           ["convert", self.CORPUS / "dance.bvh", out, "--onto", "1.7"],

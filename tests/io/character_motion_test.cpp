@@ -223,3 +223,50 @@ TEST_CASE(
         }
     }
 }
+
+TEST_CASE(
+    "a character is exported in an A-pose, and with the names of bones, if asked to [oracle]") {
+    if (!test::has_character_files()) {
+        return;
+    }
+    const Example& e = test::example(kWalk);
+    const io::Take own = take_of(e);
+    auto asked = io::sample_take(e.performance(), {.rest = io::RestPose::kA, .bone_names = true});
+    REQUIRE(asked);
+    const io::TakeActor &was = own.actors[0], &is = asked->actors[0];
+    CHECK(was.skeleton.find("leftUpperArm").valid() == false);  // the file's own names
+    CHECK(is.parent_from_joint == was.parent_from_joint);       // the motion is the same
+    std::vector<Transform> model(is.skeleton.joints.size());
+    figure::to_model_space(is.skeleton, figure::rest_pose(is.skeleton), model);
+    const auto at = [&](const char* bone) {
+        const figure::JointIndex j = is.skeleton.find(bone);
+        REQUIRE(j.valid());
+        return model[j.value].translation;
+    };
+    for (const bool left : {true, false}) {
+        const std::string side = left ? "left" : "right";
+        const Vec3 upper =
+            normalized(at((side + "LowerArm").c_str()) - at((side + "UpperArm").c_str()));
+        const Vec3 thigh =
+            normalized(at((side + "LowerLeg").c_str()) - at((side + "UpperLeg").c_str()));
+        CHECK(upper.y == doctest::Approx(-std::sqrt(0.5)).epsilon(1e-3));
+        CHECK(upper.x == doctest::Approx((left ? 1 : -1) * std::sqrt(0.5)).epsilon(1e-3));
+        CHECK(thigh.y < -0.99);
+    }
+    // The mesh went along: what hangs at a hand is as far from it as before.
+    std::vector<Transform> before(was.skeleton.joints.size());
+    figure::to_model_space(was.skeleton, figure::rest_pose(was.skeleton), before);
+    std::size_t seen = 0;
+    for (std::size_t v = 0; v < was.mesh.positions.size(); ++v) {
+        if (was.mesh.weights[v][0] < 0.999f) {
+            continue;
+        }
+        const std::size_t j = was.mesh.joints[v][0];
+        const auto point = [](const std::array<float, 3>& p) { return Vec3{p[0], p[1], p[2]}; };
+        const Vec3 a = inverse(before[j]) * point(was.mesh.positions[v]);
+        const Vec3 b = inverse(model[j]) * point(is.mesh.positions[v]);
+        REQUIRE(length(a - b) < 1e-5);
+        ++seen;
+    }
+    CHECK(seen > 100);
+}

@@ -129,7 +129,7 @@ Measures measured_on_stage(const Example& e, std::uint32_t actor, double begin_s
              [&](double t, std::span<Transform> world) {
                  e.performance().pose({actor}, at(t), pose);
                  const figure::Skeleton& skeleton = *e.performance().actors()[actor].skeleton;
-                 if (!e.performance().actors()[actor].own_rest) {
+                 if (e.performance().actors()[actor].character == nullptr) {
                      figure::to_model_space(skeleton, pose, world);
                      return;
                  }

@@ -48,7 +48,12 @@ struct TakeOptions {
     std::int64_t handles_frames =
         0;  // more frames before and after `frames`, as far as there are any
     RootMode root = RootMode::kMotion;
-    RestPose rest = RestPose::kT;
+    // None: the figure's own, of mannequins the T-pose, of characters that of their file. Creatures
+    // keep theirs in any case.
+    std::optional<RestPose> rest;
+    // Joints of characters get the names of the bones that they are (docs/conventions.md) instead
+    // of those of their file, so that the writers' sets of names apply to them.
+    bool bone_names = false;
     // Besides the frames: keys at events, and where a held prop would leave the hand by more than
     // 0.25 mm between keys.
     bool keys_at_events = true;

@@ -12,6 +12,7 @@
 
 #include "puppetri/base/index.h"
 #include "puppetri/base/time.h"
+#include "puppetri/figure/character.h"
 #include "puppetri/figure/mesh.h"
 #include "puppetri/figure/skeleton.h"
 #include "puppetri/motion/bound_call.h"
@@ -47,7 +48,8 @@ struct ActorView {
     const figure::Skeleton* skeleton = nullptr;  // lives as long as the performance
     const figure::Mesh* mesh = nullptr;
     figure::JointIndex hips = {};  // none where there are none; joint 0 is the root
-    bool own_rest = false;         // a character's: its rest pose is its file's and no T-pose
+    // Of a character: its skeleton has the names, axes and rest pose of its file.
+    const figure::Character* character = nullptr;
 };
 struct PropView {
     std::string name;
