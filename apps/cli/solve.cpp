@@ -11,7 +11,7 @@
 #include "commands.h"
 #include "horizon.h"
 #include "measures.h"
-#include "puppetri/io/disk_files.h"
+#include "proving.h"
 #include "puppetri/io/json_writer.h"
 #include "puppetri/proof/markov_net.h"
 #include "puppetri/scene/scene.h"
@@ -54,11 +54,11 @@ double value_of(const MarkovNet& markov, const std::vector<double>& shares, cons
 }
 
 std::optional<SimTime> time_argument(const Arguments& arguments, const char* name,
-                                     const scene::Scene& scene, bool& good) {
+                                     FrameRate frame_rate, bool& good) {
     if (!arguments.given(name)) {
         return std::nullopt;
     }
-    const auto horizon = parse_horizon(arguments.text(name), scene.frame_rate);
+    const auto horizon = parse_horizon(arguments.text(name), frame_rate);
     if (!horizon || !horizon->time) {
         say_error(std::string(name) + ": write a time, as 40s");
         good = false;
@@ -85,16 +85,16 @@ int solve(const Arguments& arguments) {
     if (!watched) {
         return kBadInput;
     }
-    io::DiskFiles files;
-    const auto scene = scene::load(files, arguments.text("scene"));
-    if (!scene) {
-        say_diagnostics(scene.error());
-        return kBadInput;
+    const auto subject = load_subject(arguments.text("scene"), arguments);
+    if (!subject) {
+        return subject.error();
     }
-    const net::Net& net = scene->net;
+    const scene::Scene* scene = subject->scene.get();
+    const net::Net& net = scene != nullptr ? scene->net : *subject->net;
+    const FrameRate rate = scene != nullptr ? scene->frame_rate : FrameRate{};
     bool good = true;
-    const std::optional<SimTime> at = time_argument(arguments, "--at", *scene, good),
-                                 within = time_argument(arguments, "--within", *scene, good);
+    const std::optional<SimTime> at = time_argument(arguments, "--at", rate, good),
+                                 within = time_argument(arguments, "--within", rate, good);
     if (!good) {
         return kBadInput;
     }
@@ -130,7 +130,12 @@ int solve(const Arguments& arguments) {
         std::erase_if(metrics, [&](const sim::Metric& m) { return !solvable(m.kind, !at); });
     }
     const MarkovNet markov =
-        proof::markov_net({net, atoms, {}, 0, scene->beat.ticks, watched->budget()});
+        proof::markov_net({net,
+                           atoms,
+                           {},
+                           0,
+                           scene != nullptr ? scene->beat.ticks : kTicksPerSecond,
+                           watched->budget()});
     watched->wipe();
     if (!markov.available()) {
         say("UNKNOWN: this net is no finite Markov chain:");
@@ -162,6 +167,9 @@ int solve(const Arguments& arguments) {
                 {"P(" + name + " within " + arguments.text("--within") + ")", s.values[0], ""});
             residual = std::max(residual, s.residual);
         }
+        const ChainSolution ever = proof::ever_reached(markov.chain, goal);
+        rows.push_back({"P(" + name + " ever)", ever.values[0], ""});
+        residual = std::max(residual, ever.residual);
         const ChainSolution s = proof::mean_time_to(markov.chain, goal);
         rows.push_back({"mean time to " + name, s.values[0], "s"});
         residual = std::max(residual, s.residual);
@@ -212,7 +220,7 @@ int solve(const Arguments& arguments) {
 
 Command solve_command() {
     std::vector<Option> options = {
-        {"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
+        {"scene", Value::kText, "SCENE", "a .pup file with a scene, or a net of PIPE (.xml)", true},
         {"--measure", Value::kTexts, "MEASURE", "what to compute; without: everything", false},
         {"--at", Value::kText, "T", "at this time instead of in the long run", false},
         {"--reach", Value::kText, "STATE", "a named state or a place: the mean time until it holds",
@@ -223,12 +231,13 @@ Command solve_command() {
         options.push_back(std::move(option));
     }
     return {
-        "solve", "means and probabilities of an exponential net, computed instead of estimated",
-        "Where all durations and delays are exponential or none, a net is a Markov chain: its "
-        "long run, its state\n"
-        "at an instant and the time until something happens are solved, and the residual of the "
-        "equations is\n"
-        "printed. Ties go by `odds`, priorities hold, `servers` count. What is in the way is "
+        "solve", "means and probabilities of a Markov chain or net, computed instead of estimated",
+        "Where all durations and delays are exponential or none, a net is a Markov chain; where "
+        "all are constant,\n"
+        "one in steps. Its long run, its state at an instant, the time until something happens "
+        "and the probability\n"
+        "that it ever does are solved, and the residual of the equations is printed. Ties go by "
+        "`odds`, priorities hold, `servers` count. What is in the way is "
         "named; exit 3 then.\n\n"
         "Measures are those of `puppetri sweep`: PLACE.tokens, PLACE.busy, PLACE.stay, "
         "TRANSITION.rate.\n\n"
@@ -236,6 +245,7 @@ Command solve_command() {
         "  puppetri solve shop.pup\n"
         "  puppetri solve shop.pup --measure shop.queue.stay --json\n"
         "  puppetri solve shop.pup --at 60s\n"
+        "  puppetri solve gspn1.xml\n"
         "  puppetri solve shop.pup --reach full --within 1h",
         std::move(options), solve};
 }

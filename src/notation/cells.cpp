@@ -14,6 +14,7 @@
 //   }
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -36,7 +37,8 @@ constexpr int kMostRadius = 10;
 constexpr std::int64_t kFollows = 1'000'000;
 constexpr std::int64_t kOrders = 64;
 
-constexpr std::string_view kStateForm = "NAME \"caption\" shown \"#\" does me.MOVEMENT takes TIME";
+constexpr std::string_view kStateForm =
+    "NAME \"caption\" shown \"#\" does me.MOVEMENT takes TIME, or NAME continues STATE";
 constexpr std::string_view kRuleForm = "FROM -> TO when CONDITION";
 constexpr std::string_view kStartForm = "starts STATE at CELL, or at [CELL, CELL]";
 
@@ -86,6 +88,8 @@ class Cells {
         char shown = 0;
         Expr does;
         lang::Duration takes;
+        lang::Path continues;   // the figure goes on with what it does in that state
+        std::size_t place = 0;  // the state whose place the figure is in
         lang::Span span;
         bool entered = false;
     };
@@ -184,7 +188,11 @@ class Cells {
     }
 
     void state(Line& line) {
-        State made{.name = line.name().steps[0], .does = {}, .takes = {}, .span = line.span()};
+        State made{.name = line.name().steps[0],
+                   .does = {},
+                   .takes = {},
+                   .continues = {},
+                   .span = line.span()};
         lang::Caption caption = line.caption();
         while (!line.done()) {
             if (line.word("shown")) {
@@ -204,6 +212,10 @@ class Cells {
                 if (const Expr* e = line.value("a time")) {
                     made.takes = make_duration(*e);
                 }
+            } else if (line.word("continues")) {
+                if (const lang::Path* path = line.path("the name of a state")) {
+                    made.continues = *path;
+                }
             } else {
                 line.finish(kStateForm);
             }
@@ -221,6 +233,16 @@ class Cells {
                               name + " means a cell in the rules of this block",
                               "choose another name for the state");
                 return;
+            }
+        }
+        made.place = states_.size();
+        if (!made.continues.empty()) {
+            const auto before = state_of(made.continues);  // in a line above this one
+            made.place = before ? states_[*before].place : made.place;
+            if (made.does || made.takes.kind != lang::DurationKind::kDefault) {
+                teller_.error("syntax", made.span,
+                              "a state that continues another has no movement of its own",
+                              "remove `continues`, or `does` and `takes`");
             }
         }
         states_.push_back(std::move(made));
@@ -693,7 +715,8 @@ class Cells {
         }
     }
 
-    // A place for each state, and a transition for each change that a line allows.
+    // A place for each state that does not continue another, and a transition for each change that
+    // a line allows.
     void figure(std::int64_t number, const lang::Path& who) {
         const std::int64_t column = number % columns_, row = number / columns_;
         const auto named = [&](const std::string& text, lang::Span span) {
@@ -701,13 +724,16 @@ class Cells {
         };
         for (std::size_t s = 0; s < states_.size(); ++s) {
             const State& state = states_[s];
+            if (state.place != s) {
+                continue;
+            }
             lang::Place place = make_place(named(state.name.text, state.span));
             place.is_public = true;
             place.caption = captions_[s];
             place.does = state.does;
             place.takes = state.takes;
             give_name(place.does, who);
-            if (at(column, row) == s) {
+            if (states_[at(column, row)].place == s) {
                 give_token(place);
             }
             body_.places.push_back(std::move(place));
@@ -716,19 +742,23 @@ class Cells {
         for (const Rule& r : rules_) {
             changes.emplace(std::pair(r.from, r.to), r.span);
         }
+        std::set<std::pair<std::size_t, std::size_t>> made;  // from a place, to a state
         if (wolfram_) {
             changes = {{{0, 1}, wolfram_span_}, {{1, 0}, wolfram_span_}};
         }
         for (const auto& [change, span] : changes) {
-            if (change.first == change.second) {
-                continue;
+            const std::size_t from = states_[change.first].place;
+            const std::size_t to = states_[change.second].place;
+            if (from == to || !made.insert({from, change.second}).second) {
+                continue;  // the figure goes on; or another line does the same
             }
             const std::string& before = states_[change.first].name.text;
             const std::string& after = states_[change.second].name.text;
-            lang::Transition t = make_transition(named(before + "_to_" + after, span), {},
-                                                 {make_path({named(after, span)}, span)});
-            t.inputs.push_back(
-                make_arc(lang::ArcKind::kTakeNow, make_path({named(before, span)}, span)));
+            lang::Transition t =
+                make_transition(named(before + "_to_" + after, span), {},
+                                {make_path({named(states_[to].name.text, span)}, span)});
+            t.inputs.push_back(make_arc(lang::ArcKind::kTakeNow,
+                                        make_path({named(states_[from].name.text, span)}, span)));
             t.guard = make_binary(Op::kEqual, neighbour(column, row, {}, span),
                                   state_value(change.second, span));
             t.priority = make_number(Rational{kFollows + number % kOrders}, span);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "puppetri/base/rational.h"
 #include "puppetri/base/require.h"
 
 namespace puppetri::proof {
@@ -305,6 +307,7 @@ class Solver {
 MarkovChain stopped_at(const MarkovChain& chain, const StateBits& goal) {
     MarkovChain stopped;
     stopped.initial = chain.initial;
+    stopped.lasts = chain.lasts;
     for (std::uint32_t s = 0; s < chain.size(); ++s) {
         for (const Jump& j : chain.jumps.row(s)) {
             if (!goal[s]) {
@@ -314,6 +317,49 @@ MarkovChain stopped_at(const MarkovChain& chain, const StateBits& goal) {
         stopped.jumps.starts.push_back(static_cast<std::uint32_t>(stopped.jumps.items.size()));
     }
     return stopped;
+}
+
+// Of a chain in steps: who is where when, instant by instant.
+ChainSolution at_tick(const MarkovChain& chain, std::int64_t until) {
+    constexpr std::uint64_t kMostJumps = 100'000'000;
+    ChainSolution solution{std::vector<double>(chain.size(), 0), 0};
+    std::map<std::int64_t, std::map<std::uint32_t, double>> coming;
+    for (std::uint32_t s = 0; s < chain.size(); ++s) {
+        if (chain.initial[s] != 0) {
+            coming[0][s] = chain.initial[s];
+        }
+    }
+    std::uint64_t followed = 0;
+    while (!coming.empty()) {
+        const std::int64_t now = coming.begin()->first;
+        const std::map<std::uint32_t, double> here = std::move(coming.begin()->second);
+        coming.erase(coming.begin());
+        for (const auto& [s, p] : here) {
+            const auto jumps = chain.jumps.row(s);
+            double all = 0;
+            for (const Jump& j : jumps) {
+                all += j.rate;
+            }
+            if (jumps.empty() || chain.lasts[s] > until - now) {
+                solution.values[s] += p;
+                continue;
+            }
+            for (const Jump& j : jumps) {
+                coming[now + chain.lasts[s]][j.target] += p * (j.rate / all);
+            }
+            followed += jumps.size();
+        }
+        if (followed > kMostJumps) {
+            solution.residual = 2;
+            return solution;
+        }
+    }
+    double sum = 0;
+    for (const double x : solution.values) {
+        sum += x;
+    }
+    solution.residual = std::abs(1 - sum);
+    return solution;
 }
 
 // The probabilities of first .. first + size - 1 events of a Poisson process with this mean; what
@@ -379,6 +425,10 @@ ChainSolution long_run(const MarkovChain& chain) {
 ChainSolution at_time(const MarkovChain& chain, double time_s) {
     PUP_REQUIRE(chain.initial.size() == chain.size());
     PUP_REQUIRE(time_s >= 0 && std::isfinite(time_s));
+    if (!chain.lasts.empty()) {
+        PUP_REQUIRE(chain.lasts.size() == chain.size());
+        return at_tick(chain, nearest_tick(time_s).ticks);
+    }
     const std::vector<double> exits = exit_rates(chain);
     const double fastest = exits.empty() ? 0 : *std::max_element(exits.begin(), exits.end());
     ChainSolution solution{chain.initial, 0};
@@ -433,6 +483,14 @@ ChainSolution at_time(const MarkovChain& chain, double time_s) {
 ChainSolution reached_by(const MarkovChain& chain, const StateBits& goal, double time_s) {
     PUP_REQUIRE(goal.size() == chain.size());
     const ChainSolution there = at_time(stopped_at(chain, goal), time_s);
+    ChainSolution solution{{0}, there.residual};
+    goal.for_each([&](std::uint32_t s) { solution.values[0] += there.values[s]; });
+    return solution;
+}
+
+ChainSolution ever_reached(const MarkovChain& chain, const StateBits& goal) {
+    PUP_REQUIRE(goal.size() == chain.size());
+    const ChainSolution there = long_run(stopped_at(chain, goal));
     ChainSolution solution{{0}, there.residual};
     goal.for_each([&](std::uint32_t s) { solution.values[0] += there.values[s]; });
     return solution;

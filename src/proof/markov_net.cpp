@@ -124,6 +124,70 @@ class MarkovBuilder final : public TimedBuilder {
     double rate_ = 0;
 };
 
+bool any_exponential(const NetTables& n) {
+    const auto is = [](const DurationTable& d) {
+        return d.kind == DurationKind::kDistribution &&
+               d.distribution == DistributionKind::kExponential;
+    };
+    return std::any_of(n.durations.begin(), n.durations.end(), is) ||
+           std::any_of(n.delays.begin(), n.delays.end(),
+                       [&](const DelayTable& d) { return is(d.duration); });
+}
+
+// States of exact time; only ties are drawn.
+class ClockedBuilder final : public TimedBuilder {
+ public:
+    explicit ClockedBuilder(const GraphRequest& request)
+        : TimedBuilder(request, ClockForm::kExact, "Markov chain in steps") {
+        const NetTables& n = request.net.tables();
+        const World& world = graph_.states->world;
+        const auto drawn = [&](const DurationTable& d, std::uint32_t place) {
+            switch (d.kind) {
+                case DurationKind::kConstant:
+                case DurationKind::kExpression:
+                case DurationKind::kAs:
+                    return false;
+                case DurationKind::kAuto: {
+                    const TickRange range = movement_range(world, place);
+                    return range.low != range.high;
+                }
+                default:
+                    return true;
+            }
+        };
+        const auto refuse = [this](const std::string& what) { graph_.why_not.push_back(what); };
+        for (std::uint32_t p = 0; p < n.places.size(); ++p) {
+            const std::uint32_t d = n.place[p].duration;
+            if (d != kNoIndex && drawn(n.durations[d], p)) {
+                refuse("place " + std::string(n.places.path(p)) +
+                       " has a duration that is neither constant nor exponential");
+            }
+        }
+        for (const DelayTable& d : n.delays) {
+            if (drawn(d.duration, 0)) {
+                refuse("transition " + std::string(n.transitions.path(d.transition)) +
+                       " has a delay that is neither constant nor exponential");
+            }
+        }
+        for (const std::uint32_t e : world.movement_events) {
+            refuse("event " + std::string(n.events.path(e)) + " is raised by a movement");
+        }
+        for (const std::uint32_t s : world.free_sensors) {
+            refuse("sensor " + std::string(n.data.path(s)) + " changes with the figures");
+        }
+        if (request.net.paced()) {
+            refuse("the net has no time");
+        }
+        weigh_edges();
+    }
+
+ private:
+    double weight(Driver& driver, const Driver::Step& step) override {
+        return step.label == Edge::kPass ? 1 / SimTime{step.ticks}.seconds()
+                                         : driver.chooser.chance();
+    }
+};
+
 // A distribution over the states of the chain.
 using Spread = std::vector<std::pair<std::uint32_t, double>>;
 
@@ -131,9 +195,13 @@ using Spread = std::vector<std::pair<std::uint32_t, double>>;
 
 MarkovNet markov_net(const GraphRequest& asked) {
     GraphRequest request{asked.net, asked.atoms, asked.actions, 0, asked.beat, asked.budget};
-    MarkovBuilder builder(request);
     MarkovNet made;
-    made.graph = builder.build();
+    const bool clocked = !any_exponential(asked.net.tables());
+    if (clocked) {
+        made.graph = ClockedBuilder(request).build();
+    } else {
+        made.graph = MarkovBuilder(request).build();
+    }
     made.why_not = made.graph.why_not;
     if (!made.available()) {
         return made;
@@ -199,6 +267,11 @@ MarkovNet markov_net(const GraphRequest& asked) {
         }
         made.chain.jumps.starts.push_back(
             static_cast<std::uint32_t>(made.chain.jumps.items.size()));
+    }
+    for (std::size_t i = 0; clocked && i < made.state.size(); ++i) {
+        const std::uint32_t e = g.edges.starts[made.state[i]];
+        const bool stays = e == g.edges.starts[made.state[i] + 1];
+        made.chain.lasts.push_back(stays ? SimTime::never().ticks : g.low_ticks[e]);
     }
     made.chain.initial.assign(made.state.size(), 0);
     for (const auto& [to, p] : spread_of(g.initial)) {

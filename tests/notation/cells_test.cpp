@@ -229,6 +229,20 @@ TEST_CASE("figures follow their cells in the same instant [unit]") {
                                                        "2 s l.stands_to_sits[2]"});
 }
 
+TEST_CASE("a state that continues another is no new movement [unit]") {
+    std::string longer = kWave;
+    const std::string more =
+        " stays continues stands\n sits -> stands when left = stands\n stands -> stays\n stays -> "
+        "sits\n";
+    const std::size_t at = longer.find(" sits -> stands");
+    longer.replace(at, longer.find(" starts") - at, more);
+    CHECK(log_of(longer, 3) ==
+          std::vector<std::string>{"1 s l.step", "1 s l.sits_to_stands[2]", "2 s l.step",
+                                   "2 s l.sits_to_stands[3]", "2 s l.stays_to_sits[1]",
+                                   "3 s l.step", "3 s l.sits_to_stands[1]",
+                                   "3 s l.stays_to_sits[2]"});
+}
+
 TEST_CASE("defects of cells are told where they stand [unit]") {
     const Diagnostics list = defects_of(R"(use c as l
 cells c {

@@ -157,9 +157,17 @@ TEST_CASE("what is in the way is named") {
     net::Maker make;
     make.place("fixed", 1, net::lasts(2));
     make.t("t", {"fixed"}, {"fixed"});
+    make.place("drawn", 1, exponential(1));
+    make.t("u", {"drawn"}, {"drawn"});
     const MarkovNet m = solve(compiled(make));
     REQUIRE_FALSE(m.available());
     CHECK(m.why_not[0].find("fixed") != std::string::npos);
+    net::Maker uneven;
+    uneven.place("uneven", 1,
+                 net::drawn(DistributionKind::kUniform,
+                            {Expr::time(net::seconds(1)), Expr::time(net::seconds(2))}));
+    uneven.t("t", {"uneven"}, {"uneven"});
+    CHECK(solve(compiled(uneven)).why_not.at(0).find("uneven") != std::string::npos);
     net::Maker round;
     round.place("a", 1, exponential(1));
     round.t("ab", {"a"}, {"b"});

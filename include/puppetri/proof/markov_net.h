@@ -3,6 +3,9 @@
 // as Markov chains: what a simulation estimates is computed. The net is fired by net::Engine as
 // ever; of what waits in a settled instant exactly one is over next, at the rate of its mean, and
 // ties within an instant go by their odds.
+//   Nets in which nothing is drawn but ties are chains in steps: their states are those of exact
+// time, each lasts until something is over, and where it goes is decided by odds. So all chains in
+// discrete time are solved, also several with different steps in one net.
 // Source  M. Ajmone Marsan, G. Conte, G. Balbo, "A class of generalized stochastic Petri nets for
 //         the performance evaluation of multiprocessor systems", ACM TOCS 2 (1984).
 #pragma once
@@ -19,7 +22,8 @@ namespace puppetri::proof {
 // passed with their probabilities.
 class MarkovNet {
  public:
-    // Every element that is in the way: a duration that is not exponential, an event from outside.
+    // Every element that is in the way: a duration that is not exponential (in a net where some
+    // are), or is drawn (in one where none is exponential), an event from outside.
     std::vector<std::string> why_not;
     bool available() const { return why_not.empty(); }
 
@@ -38,7 +42,9 @@ class MarkovNet {
  private:
     friend MarkovNet markov_net(const GraphRequest& request);
     std::vector<double> firings(const std::vector<double>& shares) const;
-    std::vector<double> weights_;       // by edge of the graph: a rate per second, or a probability
+    // By edge of the graph: a rate per second, or a probability. The rate of a state that lasts
+    // exactly so long is one over this time.
+    std::vector<double> weights_;
     std::vector<std::uint32_t> order_;  // the states inside of an instant, each before what follows
 };
 
