@@ -8,6 +8,7 @@
 #include "puppetri/base/text.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/io/load_net.h"
+#include "puppetri/notation/foreign_file.h"
 #include "scene_files.h"
 #include "terminal.h"
 
@@ -33,7 +34,7 @@ std::vector<Option> with_proving_options(std::vector<Option> options) {
 
 Result<Subject, int> load_subject(const std::string& path, const Arguments& arguments) {
     Subject subject;
-    if (path.ends_with(".pup")) {
+    if (notation::is_scene_file(path)) {
         io::DiskFiles files;
         if (!use_files(arguments, files)) {
             return Unexpected<int>(kBadInput);

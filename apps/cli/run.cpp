@@ -12,6 +12,7 @@
 #include "performing.h"
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/disk_files.h"
+#include "puppetri/notation/foreign_file.h"
 #include "puppetri/scene/events.h"
 #include "puppetri/scene/perform.h"
 #include "puppetri/verdict/explain.h"
@@ -68,7 +69,7 @@ void tell_story(const std::string& path, const scene::Scene& scene) {
 }
 
 int run(const Arguments& arguments) {
-    if (!arguments.text("scene").ends_with(".pup")) {
+    if (!notation::is_scene_file(arguments.text("scene"))) {
         return run_net(arguments);
     }
     io::DiskFiles files;
@@ -173,7 +174,8 @@ Command run_command() {
         "  puppetri run show.pup --events session.txt --hash\n"
         "  puppetri run duet.pup --witness out/everybody.witness.json\n"
         "  puppetri run net.pnml --witness out/deadlock_free.witness.json   also --for 1000x",
-        {{"scene", Value::kText, "SCENE", "a scene (.pup) or a net (.pnml, .xml, .net)", true},
+        {{"scene", Value::kText, "SCENE", "a scene (.pup, .scxml) or a net (.pnml, .xml, .net)",
+          true},
          {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
          {"--for", Value::kText, "HOW LONG",
           "a time (40s), frames (960f) or firings (1000x), instead of the scene's", false},

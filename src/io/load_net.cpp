@@ -5,6 +5,7 @@
 #include "puppetri/io/pipe.h"
 #include "puppetri/io/pnml.h"
 #include "puppetri/io/tina.h"
+#include "puppetri/notation/foreign_file.h"
 #include "puppetri/scene/scene.h"
 
 namespace puppetri::io {
@@ -39,7 +40,7 @@ bool looks_like_pipe(std::string_view text) {
 
 std::optional<NetFormat> net_format_of(std::string_view path, std::string_view text) {
     const std::string ending = ending_of(path);
-    if (ending == ".pup") {
+    if (notation::is_scene_file(path)) {
         return NetFormat::kScene;
     }
     if (ending == ".net") {
@@ -64,7 +65,7 @@ Checked<NetFile> read_net(std::string_view text, const std::string& path, const 
         return read_tina(text, path, limits);
     }
     return refuse("not-a-net-file", path, "the format of the file is not known",
-                  "nets are read from .pnml, .xml, .net and .pup");
+                  "nets are read from .pnml, .xml, .net, .scxml and .pup");
 }
 
 Checked<NetFile> load_net(const std::string& path, const NetLimits& limits) {

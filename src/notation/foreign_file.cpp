@@ -12,6 +12,7 @@ namespace {
 
 // In alphabetical order.
 constexpr std::array kFormats = {
+    ForeignFormat{".scxml", "a statechart as other programs export it", read_scxml},
     ForeignFormat{".tuples", "which keyframe an object reaches when", read_tuple_file},
 };
 
@@ -25,6 +26,11 @@ const ForeignFormat* find_foreign_format(std::string_view path) {
                path.substr(path.size() - f.ending.size()) == f.ending;
     });
     return found == kFormats.end() ? nullptr : &*found;
+}
+
+bool is_scene_file(std::string_view path) {
+    return (path.size() > 4 && path.substr(path.size() - 4) == ".pup") ||
+           find_foreign_format(path) != nullptr;
 }
 
 lang::Parsed parse(std::string_view text, std::string_view path, std::uint32_t file) {

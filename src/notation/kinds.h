@@ -15,6 +15,7 @@ void lower_markov(const lang::Block& block, const lang::File& file, Lowered& out
 void lower_messages(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_pulses(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_queue(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_script(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_unit(const lang::Block& block, const lang::File& file, Lowered& out);
 
 }  // namespace puppetri::notation

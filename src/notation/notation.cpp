@@ -20,6 +20,8 @@ constexpr std::array kNotations = {
     Notation{"messages", "nodes that pass messages both ways along links", lower_messages},
     Notation{"pulses", "a pulse process on a signed, weighted digraph", lower_pulses},
     Notation{"queue", "a queueing network: sources, stations with servers, routes", lower_queue},
+    Notation{"script", "a space-time-event script: who does what, from when to when, or when what",
+             lower_script},
     Notation{"unit", "event units: sequence, parallel, choice, repeat, until, interrupt",
              lower_unit},
 };

@@ -25,6 +25,9 @@ std::span<const ForeignFormat> foreign_formats();
 // Null where the path has another ending: then the file is in the language.
 const ForeignFormat* find_foreign_format(std::string_view path);
 
+// By its ending: a file that parse() reads, in the language or in another notation.
+bool is_scene_file(std::string_view path);
+
 // By the ending of `path`: lang::parse or the reader of the format.
 lang::Parsed parse(std::string_view text, std::string_view path, std::uint32_t file);
 
