@@ -17,6 +17,7 @@
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/net/tables.h"
+#include "puppetri/scene/beside.h"
 #include "puppetri/scene/scene.h"
 #include "puppetri/sim/net_experiment.h"
 #include "sweep_grid.h"
@@ -132,12 +133,36 @@ bool needs_stage(const scene::Scene& scene) {
     const bool asks =
         std::any_of(tables.durations.begin(), tables.durations.end(),
                     [](const net::DurationTable& d) { return d.kind == net::DurationKind::kAuto; });
-    return asks || std::any_of(scene.play.actions.begin(), scene.play.actions.end(),
-                               [](const stage::Action& a) { return !a.raises.empty(); });
+    return asks || !scene.equations.empty() || !scene.sensors.empty() ||
+           std::any_of(scene.play.actions.begin(), scene.play.actions.end(),
+                       [](const stage::Action& a) { return !a.raises.empty(); });
 }
 
+// The stage of one run, with the equations and sensors that go on beside the net.
+class Theatre final : public net::MovementHost {
+ public:
+    explicit Theatre(const scene::Scene& scene)
+        : beside_(scene), stage_(scene.play, beside_.quantities()) {}
+    SimTime begin(net::ActionIndex action, net::ActivityIndex activity, SimTime at,
+                  SimTime duration, std::span<const std::int64_t> attributes) override {
+        return stage_.begin(action, activity, at, duration, attributes);
+    }
+    std::span<const net::RaisedEvent> raised(net::ActivityIndex activity) override {
+        return stage_.raised(activity);
+    }
+    void cut(net::ActivityIndex activity, SimTime at) override { stage_.cut(activity, at); }
+    void left(net::ActivityIndex activity, SimTime at) override { stage_.left(activity, at); }
+    std::vector<run::Coupled*> coupled() { return beside_.coupled(stage_); }
+
+ private:
+    scene::Beside beside_;
+    stage::Stage stage_;
+};
 std::unique_ptr<net::MovementHost> make_stage(const void* context) {
-    return std::make_unique<stage::Stage>(static_cast<const scene::Scene*>(context)->play);
+    return std::make_unique<Theatre>(*static_cast<const scene::Scene*>(context));
+}
+std::vector<run::Coupled*> coupled_to(net::MovementHost& host) {
+    return static_cast<Theatre&>(host).coupled();
 }
 
 // What all points share in the progress on the terminal.
@@ -322,6 +347,7 @@ int sweep(const Arguments& arguments) {
             options.beat = scenes[i].beat;
             if (needs_stage(scenes[i])) {
                 options.host = make_stage;
+                options.coupled = coupled_to;
                 options.context = &scenes[i];
             }
             const sim::NetExperiment experiment(scenes[i].net, metrics[i], options);

@@ -13,6 +13,10 @@ namespace {
 constexpr std::array kNotations = {
     Notation{"automaton", "a finite automaton whose states last", lower_automaton},
     Notation{"cells", "a cellular automaton whose cells may be figures", lower_cells},
+    Notation{"equations",
+             "differential, difference and delay equations beside the net, with crossings as "
+             "events",
+             lower_equations},
     Notation{"event_graph", "an event graph: events that schedule and cancel others",
              lower_event_graph},
     Notation{"logic", "a digital circuit of gates with delays", lower_logic},

@@ -125,7 +125,9 @@ TimedBuilder::TimedBuilder(const GraphRequest& request, ClockForm form, const ch
         waits.by_outside[s.event.value] = 0;
     }
     for (std::uint32_t e = 0; e < n.events.size(); ++e) {
-        if (!n.declarations.events[e].outside || of_movement(request.net, e)) {
+        // A crossing may never come.
+        const EventDraft& event = n.declarations.events[e];
+        if (!event.crossing && (!event.outside || of_movement(request.net, e))) {
             waits.by_outside[e] = 0;
         }
     }

@@ -180,21 +180,18 @@ double Equations::Course::value(std::uint32_t variable, double t_s) const {
 }
 
 double Equations::Course::output(ProgramIndex program, double t_s) const {
-    thread_local std::vector<double> x, locals;  // scratch: results never depend on what it holds
-    if (pieces_.empty()) {
-        return 0;
-    }
-    const Piece& piece = piece_at(t_s);
+    thread_local std::vector<double> x, locals, none;  // scratch: results never depend on it
     x.resize(n_);
     locals.resize(system_.locals.size());
-    for (std::uint32_t i = 0; i < n_; ++i) {
-        x[i] = at(piece, t_s, i);
+    for (std::uint32_t i = 0; i < system_.variables.size(); ++i) {
+        x[i] = past(i, t_s);
     }
+    none.assign(system_.data.size(), 0);
     Reader reader;
     reader.course = this;
     reader.t_s = t_s;
     reader.x = x.data();
-    reader.data = data_rows_[piece.data].data();
+    reader.data = pieces_.empty() ? none.data() : data_rows_[piece_at(t_s).data].data();
     reader.locals = locals.data();
     double out = 0;
     return fill_locals(reader) && evaluate(system_.code, program, reader, out) ? out : 0;
@@ -453,6 +450,15 @@ bool Equations::Course::extend(Diagnostic& fault) {
         piece.end_s = solver_.now_s();
     }
     pieces_.push_back(std::move(piece));
+    return true;
+}
+
+bool Equations::Course::carry_to(double t_s, Diagnostic& fault) {
+    while (begun_ && pieces_.back().end_s <= t_s) {
+        if (!extend(fault)) {
+            return false;
+        }
+    }
     return true;
 }
 

@@ -26,6 +26,7 @@ class Equations::Course final : public OdeSystem {
     void deliver();
     bool may_cross() const { return !system_.events.empty() && (enabled_ || !begun_); }
 
+    bool carry_to(double t_s, Diagnostic& fault);
     double value(std::uint32_t variable, double t_s) const;
     double output(ProgramIndex program, double t_s) const;
 

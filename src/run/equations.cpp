@@ -59,6 +59,15 @@ bool Equations::may_cross() const {
     return false;
 }
 
+bool Equations::carry_to(SimTime at, Diagnostic& fault) {
+    for (const auto& c : courses_) {
+        if (!c->carry_to(at.seconds(), fault)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 const std::vector<EquationSystem>& Equations::systems() const { return systems_; }
 
 double Equations::value(std::uint32_t system, std::uint32_t variable, SimTime at) const {

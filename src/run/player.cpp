@@ -54,7 +54,7 @@ struct Player::Data final : net::EngineListener {
 
     net::Engine::Outcome run(std::int64_t until, std::uint64_t firings);
     net::Engine::Outcome run_coupled(std::int64_t until, std::uint64_t firings);
-    bool next_crossings(SimTime until, Coupled*& whose, Coupled::Crossings& found);
+    bool next_crossings(SimTime until, std::vector<Coupled*>& whose, Coupled::Crossings& found);
     bool may_cross() const {
         return std::any_of(options.coupled.begin(), options.coupled.end(),
                            [](const Coupled* c) { return c->may_cross(); });
@@ -80,9 +80,10 @@ net::Engine::Outcome Player::Data::run(std::int64_t until, std::uint64_t firings
     return options.coupled.empty() ? engine.run(until, firings) : run_coupled(until, firings);
 }
 
-// The earliest crossings of all; of those at one time, the first in the list of what is coupled.
-bool Player::Data::next_crossings(SimTime until, Coupled*& whose, Coupled::Crossings& found) {
-    whose = nullptr;
+// The earliest crossings of all, in the order of the list of what is coupled.
+bool Player::Data::next_crossings(SimTime until, std::vector<Coupled*>& whose,
+                                  Coupled::Crossings& found) {
+    whose.clear();
     found = {};
     for (Coupled* c : options.coupled) {
         Coupled::Crossings next;
@@ -90,10 +91,16 @@ bool Player::Data::next_crossings(SimTime until, Coupled*& whose, Coupled::Cross
             coupled_faulted = true;
             return false;
         }
-        if (!next.events.empty() && next.at <= until && next.at < found.at) {
-            whose = c;
-            found = std::move(next);
+        if (next.events.empty() || next.at > until || next.at > found.at) {
+            continue;
         }
+        if (next.at < found.at) {
+            whose.clear();
+            found = {next.at, {}};
+            until = std::min(until, found.at);  // the others need not look further
+        }
+        whose.push_back(c);
+        found.events.insert(found.events.end(), next.events.begin(), next.events.end());
     }
     return true;
 }
@@ -121,13 +128,15 @@ net::Engine::Outcome Player::Data::run_coupled(std::int64_t until, std::uint64_t
             // Nothing but crossings can come: one within the hour, or none is waited for.
             limit = now > never - kPatience ? never : now + kPatience;
         }
-        Coupled* whose = nullptr;
+        std::vector<Coupled*> whose;
         Coupled::Crossings found;
         if (!next_crossings({limit}, whose, found)) {
             return Outcome::kFault;
         }
-        if (whose != nullptr) {
-            whose->deliver();
+        if (!whose.empty()) {
+            for (Coupled* c : whose) {
+                c->deliver();
+            }
             for (const net::EventIndex e : found.events) {
                 engine.occur(e, {std::max(found.at.ticks, now)});
             }
@@ -138,7 +147,7 @@ net::Engine::Outcome Player::Data::run_coupled(std::int64_t until, std::uint64_t
             if (next == never && (until == never || !may_cross())) {
                 return Outcome::kDead;
             }
-            engine.pass_to({until});
+            engine.pass_to({std::max(until, now)});
             return Outcome::kSettled;
         }
         outcome = engine.run(continue_to, firings);

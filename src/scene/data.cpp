@@ -7,6 +7,9 @@ namespace puppetri::scene {
 
 void Elaboration::complete_data() {
     for (std::size_t i = 0; i < data_.size(); ++i) {
+        if (data_[i].node == nullptr) {
+            continue;  // a sensor
+        }
         const lang::Data& node = *data_[i].node;
         About about(*this, "data " + data_[i].path, node.span);
         std::optional<Value> low, high;

@@ -102,7 +102,8 @@ struct Instance {
     enum class Bound : std::uint8_t { kNo, kNow, kYes };
     std::vector<std::pair<Bound, Term>> values;  // by parameter, bound when first asked for
     std::map<std::string, Member, std::less<>> members;
-    bool stand_in = false;  // parameters that were not given stand for anything
+    const lang::Block* equations = nullptr;  // the block that it was made from
+    bool stand_in = false;                   // parameters that were not given stand for anything
 };
 
 // A statement of an instance, in its scope.
@@ -150,6 +151,7 @@ class Elaboration {
     friend class About;
     friend class ClipBlock;
     friend class FormulaBlock;
+    friend class EquationsBlock;
     friend class FormulaCompiler;
 
     // telling.cpp
@@ -215,6 +217,12 @@ class Elaboration {
     Term evaluate_logic(const lang::Expr& e, const Scope& scope);
     Term evaluate_call(const lang::Expr& e, const Scope& scope);
     Term call_function(const lang::Expr& e, const Function& function, const Scope& scope);
+    // sensors.cpp -- questions to the figures: distance(ana.right_hand, ball) < 0.3 m
+    static bool is_sensor_function(std::string_view name);
+    Term sensor_quantity(const lang::Expr& e, const Scope& scope);
+    Term sensor_comparison(const lang::Expr& e, lang::Op op, const Term& a, const Term& b);
+    Term sensor_datum(stage::Sensor sensor, lang::Span where);
+    std::optional<stage::SensorPoint> sensor_point(const lang::Expr& e, const Scope& scope);
     Term evaluate_tuple(const lang::Expr& e, const Scope& scope);
     bool is_unknown_name(const lang::Expr& e, const Scope& scope);
     // The value of that name of the enumeration that the data are of.
@@ -328,6 +336,9 @@ class Elaboration {
                        net::ArcDraft& out);
     void complete_rendezvous();
     void complete_events();
+    void complete_equations();  // equations_block.cpp
+    // Whether that is a variable of equations, which nets do not read; tells it then.
+    bool told_continuous(const Instance& instance, const lang::Name& name);
     void complete_refinements();
     void complete_states();
     void complete_rules();

@@ -242,6 +242,9 @@ Term Elaboration::fold(const lang::Expr& e, Op op, const Term& a, const Term& b)
     if (is_nothing(a) || is_nothing(b)) {
         return Nothing{};
     }
+    if (std::holds_alternative<QuantityTerm>(a) || std::holds_alternative<QuantityTerm>(b)) {
+        return sensor_comparison(e, op, a, b);
+    }
     const Number* x = std::get_if<Number>(&a);
     const Number* y = std::get_if<Number>(&b);
     if (x != nullptr && y != nullptr) {

@@ -98,7 +98,7 @@ std::optional<ProgramIndex> FormulaCompiler::program_of(const lang::Expr& e, lan
     if (!value) {
         return std::nullopt;
     }
-    if (!value->fits(wanted) && !value->fits(other)) {
+    if (!value->fits(counted(wanted)) && !value->fits(counted(other))) {
         const std::string unit(lang::example_unit(wanted));
         e_.error("wrong-unit", e.span,
                  element_ + " is " + lang::to_text(wanted) + ", and this is " +
@@ -178,7 +178,7 @@ std::optional<Formula> FormulaCompiler::number(const lang::Expr& e) {
         case ExprKind::kNumber: {
             const Term term = e_.number_of(e, e.number, e.unit, e.span);
             if (const Number* n = std::get_if<Number>(&term)) {
-                out = Formula{Expr::real(n->value), n->dimension, n->value == 0};
+                out = Formula{Expr::real(n->value), counted(n->dimension), n->value == 0};
             }
             break;
         }
@@ -207,6 +207,15 @@ std::optional<Formula> FormulaCompiler::number(const lang::Expr& e) {
 
 std::optional<Formula> FormulaCompiler::name(const lang::Expr& e) {
     const auto& steps = e.path.steps;
+    Formula known_elsewhere;
+    if (names_ != nullptr) {
+        const FormulaNames::Found found = names_->find(e, known_elsewhere);
+        if (found != FormulaNames::Found::kNo) {
+            known_elsewhere.dimension = counted(known_elsewhere.dimension);
+            return found == FormulaNames::Found::kYes ? std::optional(std::move(known_elsewhere))
+                                                      : std::nullopt;
+        }
+    }
     if (steps.size() <= 3 && steps[0].index.empty()) {
         const std::string& first = steps[0].text;
         // ball.position.y
@@ -251,6 +260,10 @@ std::optional<Formula> FormulaCompiler::name(const lang::Expr& e) {
             for (const auto& [text, l] : locals_) {
                 known.push_back(text);
             }
+            if (names_ != nullptr) {
+                const std::vector<std::string> more = names_->names();
+                known.insert(known.end(), more.begin(), more.end());
+            }
             if (things_.count(first) != 0) {
                 e_.error("wrong-type", e.span, first + " is no number",
                          "write one of its coordinates: " + first + ".position.y");
@@ -261,7 +274,11 @@ std::optional<Formula> FormulaCompiler::name(const lang::Expr& e) {
         }
     }
     e_.error("wrong-type", e.span, lang::to_text(e.path) + " is nothing that a formula knows",
-             "a formula reads t, pi, the parameters of its movement and names defined before it");
+             names_ != nullptr
+                 ? "equations read t, pi, their own variables, parameters, data given to them, and "
+                   "names defined before"
+                 : "a formula reads t, pi, the parameters of its movement and names defined before "
+                   "it");
     return std::nullopt;
 }
 
@@ -441,6 +458,15 @@ std::optional<Formula> FormulaCompiler::conditional(const lang::Expr& e) {
 }
 
 std::optional<Formula> FormulaCompiler::call(const lang::Expr& e) {
+    Formula known_elsewhere;
+    if (names_ != nullptr) {
+        const FormulaNames::Found found = names_->call(e, known_elsewhere);
+        if (found != FormulaNames::Found::kNo) {
+            known_elsewhere.dimension = counted(known_elsewhere.dimension);
+            return found == FormulaNames::Found::kYes ? std::optional(std::move(known_elsewhere))
+                                                      : std::nullopt;
+        }
+    }
     const Function* f = e.path.steps.size() == 1 ? find_function(e.path.steps[0].text) : nullptr;
     if (f == nullptr) {
         std::vector<std::string> known;
@@ -534,7 +560,7 @@ std::optional<Formula> FormulaCompiler::call(const lang::Expr& e) {
             break;
     }
     if (gives_angle(f->op)) {
-        dimension = lang::dimension::kAngle;
+        dimension = counted(lang::dimension::kAngle);
     }
     std::optional<Expr> value = std::move(args[0].value);
     if (f->operands == 1) {
@@ -592,7 +618,8 @@ std::optional<Formula3> FormulaCompiler::point(const lang::Expr& e) {
             lang::Expr product = e.args[k].value;
             product.op = Op::kMultiply;
             product.kind = ExprKind::kBinary;
-            return fold(product, std::move(*value), e, Formula{Expr::real(u->value), u->dimension});
+            return fold(product, std::move(*value), e,
+                        Formula{Expr::real(u->value), counted(u->dimension)});
         });
     }
     if (e.kind == ExprKind::kPath && is_point(e)) {

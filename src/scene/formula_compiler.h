@@ -25,11 +25,33 @@ struct Formula {
 };
 using Formula3 = std::array<Formula, 3>;
 
+// Names that formulas know beside the time, parameters and parts: what a path or a call stands for.
+class FormulaNames {
+ public:
+    enum class Found : std::uint8_t {
+        kNo,     // nothing that it knows
+        kYes,    // in `out`
+        kWrong,  // something is wrong with it, and has been told
+    };
+    virtual ~FormulaNames() = default;
+    virtual Found find(const lang::Expr& path, Formula& out) = 0;
+    virtual Found call(const lang::Expr& call, Formula& out) = 0;
+    virtual std::vector<std::string> names() const = 0;  // for proposals
+};
+
 class FormulaCompiler {
  public:
     // Compiles into `out`. Needs both to outlive it.
     FormulaCompiler(Elaboration& elaboration, motion::FormulaMovement& out)
         : e_(elaboration), out_(out) {}
+
+    // Asked before anything else. Then radians count as numbers, as in physics: the rate of the
+    // rate of an angle may be a length over a length and a time squared.
+    void also_knows(FormulaNames* names) { names_ = names; }
+    lang::Dimension counted(lang::Dimension d) const {
+        d.angle = names_ != nullptr ? std::int8_t{0} : d.angle;
+        return d;
+    }
 
     // Parameters: a number of that dimension, or the place of a thing.
     void add_number(const std::string& name, lang::Dimension dimension);
@@ -79,6 +101,7 @@ class FormulaCompiler {
     void danger(const Expr& value, bool negative, const lang::Expr& e, std::string what);
 
     Elaboration& e_;
+    FormulaNames* names_ = nullptr;
     motion::FormulaMovement& out_;
     std::string element_;
     std::map<std::string, std::pair<std::uint32_t, lang::Dimension>, std::less<>> numbers_;

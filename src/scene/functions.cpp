@@ -65,6 +65,9 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
             }
             return call_function(e, *f, scope);
         }
+        if (is_sensor_function(name)) {
+            return sensor_quantity(e, scope);
+        }
         if (const OwnDefinition* own = own_movement(name, e.span.file)) {
             // What is wrong with it has been told.
             return own->movement != nullptr ? movement_value(e, e.path, scope) : Term{Nothing{}};
@@ -77,6 +80,7 @@ Term Elaboration::evaluate_call(const lang::Expr& e, const Scope& scope) {
     for (const Function& f : kFunctions) {
         known.emplace_back(f.name);
     }
+    known.insert(known.end(), {"distance", "height", "speed", "angle", "inside"});
     for (const motion::MovementSignature& m : motion::movement_library()) {
         if (motion::find_movement(m.name, motion::SubjectKind::kActor) != nullptr) {
             known.emplace_back(m.name);

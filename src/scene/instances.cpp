@@ -133,6 +133,7 @@ std::uint32_t Elaboration::make_instance(const Declaration& net, std::string pat
     Instance& made = instances_.emplace_back();
     made.net = net.net;
     made.body = &net.net->body;
+    made.equations = library_.equations_of(net.net);
     made.file = net.file;
     made.path = std::move(path);
     made.up = scope.instance;

@@ -96,6 +96,7 @@ class Loader {
             library_.diagnostics.push_back(std::move(d));
         }
         library_.lowered.push_back(std::move(lowered.net));
+        library_.lowered_from.push_back(&block);
         declare(names, block.name, {.file = number, .net = &library_.lowered.back()});
     }
 
@@ -195,6 +196,15 @@ class Loader {
 
 bool is_movement_kind(std::string_view kind) {
     return kind == "movement" || kind == "keyframes" || kind == "clip";
+}
+
+const lang::Block* Library::equations_of(const lang::Net* net) const {
+    for (std::size_t i = 0; i < lowered_from.size(); ++i) {
+        if (&lowered[i] == net && lowered_from[i]->kind.text == "equations") {
+            return lowered_from[i];
+        }
+    }
+    return nullptr;
 }
 
 Library load_library(FileSource& source, const std::string& path) {

@@ -30,12 +30,16 @@ struct Library {
     FileSource* source = nullptr;   // what it was read from: gives characters and clips as well
     std::deque<lang::File> files;   // by number, as in lang::Span::file; addresses stay
     std::deque<lang::Net> lowered;  // what blocks of notations stand for
+    std::vector<const lang::Block*> lowered_from;             // these blocks, by the same number
     std::vector<std::map<std::string, Declaration>> visible;  // by file
     std::vector<std::map<std::string, std::string>>
         texts;  // by file: of its event files, by the path as written
     std::vector<motion::OwnMovementPtr> movements;  // of the embedding program
     Diagnostics diagnostics;                        // of reading and parsing
     bool readable = true;  // all files are there and have been parsed without errors
+
+    // The block `equations` that a net was made from; null for any other.
+    const lang::Block* equations_of(const lang::Net* net) const;
 
     SourceSpan where(lang::Span span) const {
         return span.file < files.size() ? files[span.file].where(span) : SourceSpan{};

@@ -67,6 +67,7 @@ void Elaboration::complete() {
     complete_rules();
     complete_ends();
     complete_events();
+    complete_equations();
     complete_blocks();
     check_cast();
     // Every argument is looked at, also where nothing asked for it.
@@ -96,6 +97,7 @@ void Elaboration::elaborate_alone(const Declaration& net) {
     Instance& root = instances_.emplace_back();
     root.net = net.net;
     root.body = &net.net->body;
+    root.equations = library_.equations_of(net.net);
     root.file = net.file;
     root.stand_in = true;
     root.where = net.net->name.span;

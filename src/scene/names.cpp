@@ -159,6 +159,9 @@ Term Elaboration::resolve_next(const Term& before, const lang::Name& name, const
         const auto member =
             instance.members.find(name.index.empty() ? name.text : key_of(name, scope));
         if (member == instance.members.end()) {
+            if (told_continuous(instance, name)) {
+                return Nothing{};
+            }
             for (const auto& [key, m] : instance.members) {
                 known.push_back(key);
             }

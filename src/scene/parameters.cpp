@@ -18,7 +18,7 @@ constexpr QuantityType kQuantities[] = {
     {"number", lang::dimension::kNone},
 };
 const char* const kOthers[] = {"actor",    "prop",  "set",   "int",        "bool",  "side",
-                               "movement", "point", "place", "transition", "event", "text"};
+                               "movement", "point", "place", "transition", "event", "data", "text"};
 
 std::vector<std::string> type_names() {
     std::vector<std::string> names;
@@ -56,6 +56,9 @@ bool is_thing_of(std::string_view type, const Term& value) {
     }
     if (type == "event") {
         return std::holds_alternative<EventTerm>(value);
+    }
+    if (type == "data") {
+        return std::holds_alternative<DatumTerm>(value);
     }
     if (type == "text") {
         return std::holds_alternative<Text>(value);

@@ -37,13 +37,15 @@ Session::Session(const Scene& scene, const PerformOptions& options)
       options_(options),
       horizon_(options.horizon.given() ? options.horizon : scene.horizon),
       limits_(limits_of(horizon_)),
-      stage_(scene.play),
+      beside_(scene),
+      stage_(scene.play, beside_.quantities()),
       script_(options.script ? std::optional<net::ScriptedChooser>(*options.script) : std::nullopt),
       player_(scene.net, {.seed = options.seed.value_or(scene.seed),
                           .host = &stage_,
                           .chooser = script_ ? &*script_ : nullptr,
                           .sink = options.sink,
                           .beat = scene.beat,
+                          .coupled = beside_.coupled(stage_),
                           .record = options.record}) {
     player_.schedule(options.events);
 }
@@ -121,6 +123,11 @@ Checked<Performed> Session::finish() {
     out.notes.insert(out.notes.end(), stage_.diagnostics().begin(), stage_.diagnostics().end());
     if (options_.record) {
         out.recording = player_.recording();
+    }
+    Diagnostic fault;
+    if (!out.fault && !beside_.carry_to(out.end, fault)) {
+        out.stop = run::Stop::kFault;
+        out.fault = std::move(fault);
     }
     out.performance = stage_.finish(out.end);
     return out;

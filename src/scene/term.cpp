@@ -76,6 +76,9 @@ struct Describe {
     std::string operator()(const DatumTerm&) const { return "data"; }
     std::string operator()(const EnumTerm&) const { return "a value of an enumeration"; }
     std::string operator()(const EnumerationTerm&) const { return "an enumeration"; }
+    std::string operator()(const QuantityTerm& q) const {
+        return "what figures are asked, `" + q.text + "`";
+    }
     std::string operator()(const MovementTerm&) const { return "a movement"; }
     std::string operator()(const Expr& e) const {
         return std::string("a value of type ") + name_of(e.type().kind);

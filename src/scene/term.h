@@ -14,6 +14,7 @@
 #include "puppetri/lang/units.h"
 #include "puppetri/motion/bound_call.h"
 #include "puppetri/net/formula.h"
+#include "puppetri/stage/sensors.h"
 
 namespace puppetri::scene {
 
@@ -87,14 +88,20 @@ struct EnumTerm {  // a value of an enumeration
 struct EnumerationTerm {  // an enumeration itself
     std::uint32_t enumeration = 0;
 };
+// What a sensor asks the figures, before it is compared with a value: `height(ana.head)`.
+struct QuantityTerm {
+    stage::Sensor sensor;
+    lang::Dimension dimension;
+    std::string text;  // as written
+};
 struct MovementTerm {  // a movement as value; the subject is left open
     motion::BoundCall call;
 };
 
-using Term =
-    std::variant<Nothing, Number, bool, Text, Word, PointTerm, ActorTerm, LimbTerm, PropTerm,
-                 SetTerm, HolderOfTerm, HolderTerm, InstanceTerm, PlaceTerm, TransitionTerm,
-                 EventTerm, DatumTerm, EnumTerm, EnumerationTerm, MovementTerm, Expr, net::Formula>;
+using Term = std::variant<Nothing, Number, bool, Text, Word, PointTerm, ActorTerm, LimbTerm,
+                          PropTerm, SetTerm, HolderOfTerm, HolderTerm, InstanceTerm, PlaceTerm,
+                          TransitionTerm, EventTerm, DatumTerm, EnumTerm, EnumerationTerm,
+                          MovementTerm, QuantityTerm, Expr, net::Formula>;
 
 inline bool is_nothing(const Term& term) { return std::holds_alternative<Nothing>(term); }
 

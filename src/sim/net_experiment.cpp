@@ -22,6 +22,9 @@ class NetRunner final : public Runner {
         if (options_.host != nullptr) {
             host = options_.host(options_.context);
             options.host = host.get();
+            if (options_.coupled != nullptr) {
+                options.coupled = options_.coupled(*host);
+            }
         }
         run::Player player(net_, options);
         meter_.begin(player);

@@ -59,7 +59,8 @@ std::vector<motion::DurationRange> declared_durations(const Play& play) {
     return list;
 }
 
-Stage::Stage(Play play) : data_(std::make_unique<Data>(std::move(play))) {}
+Stage::Stage(Play play, std::shared_ptr<const Quantities> quantities)
+    : data_(std::make_unique<Data>(std::move(play), std::move(quantities))) {}
 Stage::~Stage() = default;
 Stage::Stage(Stage&&) noexcept = default;
 Stage& Stage::operator=(Stage&&) noexcept = default;
@@ -147,6 +148,10 @@ const figure::Figure& Stage::figure(ActorIndex actor) const {
     PUP_REQUIRE(actor.value < data_->take.actors.size());
     return *data_->take.actors[actor.value].figure;
 }
+Transform Stage::world_from_prop(PropIndex prop, SimTime at) const {
+    PUP_REQUIRE(prop.value < data_->take.props.size());
+    return data_->take.world_from_prop(prop, std::max(at, SimTime{0}));
+}
 const Diagnostics& Stage::diagnostics() const { return data_->diagnostics; }
 
 std::unique_ptr<const Performance> Stage::finish(SimTime end) {
@@ -175,7 +180,7 @@ std::unique_ptr<const Performance> Stage::finish(SimTime end) {
     }
     std::stable_sort(take.events.begin(), take.events.end(),
                      [](const StageEvent& x, const StageEvent& y) { return x.at < y.at; });
-    data_ = std::make_unique<Data>(Play{});
+    data_ = std::make_unique<Data>(Play{}, nullptr);
     return make_take_performance(std::move(take));
 }
 

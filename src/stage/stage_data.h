@@ -79,9 +79,11 @@ struct Stage::Data {
     };
     std::vector<Waiting> waiting;
 
-    explicit Data(Play p) : play(std::move(p)) {
+    Data(Play p, std::shared_ptr<const Quantities> quantities) : play(std::move(p)) {
         PUP_REQUIRE(!has_errors(check(play.cast)));
         take.cast = play.cast;
+        take.driven_props.resize(play.cast.props.size());
+        take.driven_joints.resize(play.cast.actors.size());
         waiting.resize(play.cast.actors.size());
         for (std::uint32_t i = 0; i < play.cast.actors.size(); ++i) {
             place_actor(ActorIndex{i});
@@ -89,6 +91,7 @@ struct Stage::Data {
         for (std::uint32_t i = 0; i < play.cast.props.size(); ++i) {
             place_prop(PropIndex{i});
         }
+        take.drive(play, std::move(quantities));
     }
 
     // ---- the beginning ----

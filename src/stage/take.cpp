@@ -2,7 +2,9 @@
 #include "take.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "puppetri/base/require.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/gaze.h"
 #include "puppetri/motion/grip.h"
@@ -34,6 +36,7 @@ void Take::pose(ActorIndex actor, SimTime at, figure::Pose& out, bool before) co
     }
     motion::solve_controls(*a.figure, controls, out);
     a.timeline.overlay(*a.figure, at, out, before);
+    move_driven_joints(actor, at, out);
 }
 
 Transform Take::between_hands(ActorIndex actor, double radius_m, SimTime at, bool before) const {
@@ -48,6 +51,13 @@ Transform Take::between_hands(ActorIndex actor, double radius_m, SimTime at, boo
 
 Transform Take::world_from_prop(PropIndex prop, SimTime at, bool before) const {
     const Hold& hold = props[prop.value].at(at, before);
+    const auto& driven = driven_props[prop.value];
+    if (driven && hold.kind == Holding::kFloor) {
+        const SimTime t = std::max(at, SimTime{0});
+        return {{},
+                {quantities->at((*driven)[0], t), quantities->at((*driven)[1], t),
+                 quantities->at((*driven)[2], t)}};
+    }
     switch (hold.kind) {
         case Holding::kHands: {
             Transform t = between_hands(hold.actor, radius(prop), at, before);
@@ -109,7 +119,7 @@ bool Take::gaze_target(ActorIndex actor, SimTime at, Vec3& target_world) const {
     } else if (hold.kind == Holding::kFlight) {
         target_world = hold.flight.position(at);
     } else {
-        target_world = hold.lies.translation;
+        target_world = world_from_prop(gaze.prop, at).translation;
     }
     return true;
 }

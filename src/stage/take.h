@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "puppetri/motion/prepare.h"
 #include "puppetri/stage/cast.h"
 #include "puppetri/stage/performance.h"
+#include "puppetri/stage/stage.h"
 
 namespace puppetri::stage {
 
@@ -31,12 +33,27 @@ struct ActorTake {
 };
 
 struct Take {
+    // What equations move: per prop its place, per actor its degrees of freedom, those of one joint
+    // together.
+    struct Joint {
+        figure::JointIndex joint;
+        figure::DofSet::Range range;
+        std::vector<std::uint32_t> dofs, quantities;  // numbers within the range, and whose value
+    };
+    std::shared_ptr<const Quantities> quantities;
+    std::vector<std::optional<std::array<std::uint32_t, 3>>> driven_props;
+    std::vector<std::vector<Joint>> driven_joints;
+
     Cast cast;
     std::vector<ActorTake> actors;
     std::vector<PropTimeline> props;
     std::vector<ScoreEntry> score;
     std::vector<StageEvent> events;
     SimTime end = {};
+
+    // Needs driven_props and driven_joints of the cast's sizes, and the actors' figures.
+    void drive(const Play& play, std::shared_ptr<const Quantities> from);
+    void move_driven_joints(ActorIndex actor, SimTime at, figure::Pose& pose) const;
 
     double radius(PropIndex prop) const { return cast.props[prop.value].size_m.x / 2; }
 

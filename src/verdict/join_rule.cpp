@@ -415,7 +415,7 @@ struct JoinRule::Data {
             }
             const bool matters = !net.tables().event_listeners.row(e).empty() ||
                                  event.sets.valid() || event.makes_ready.valid();
-            if (event.outside && matters) {
+            if ((event.outside || event.crossing) && matters) {
                 return false;
             }
         }

@@ -138,8 +138,15 @@ JoinRun::JoinRun(const net::Net& net, const Theatre& theatre, const MovementLane
                  const std::vector<Witness::Event>& events)
     : net_(net),
       lanes_(lanes),
-      stage_(theatre.scene->play),
-      player_(net, {.seed = seed, .host = &stage_, .chooser = &chooser, .beat = theatre.beat}) {
+      beside_(*theatre.scene),
+      stage_(theatre.scene->play, beside_.quantities()),
+      // What is coupled speaks of the elements of the whole net.
+      player_(net, {.seed = seed,
+                    .host = &stage_,
+                    .chooser = &chooser,
+                    .beat = theatre.beat,
+                    .coupled = &net == &theatre.scene->net ? beside_.coupled(stage_)
+                                                           : std::vector<run::Coupled*>{}}) {
     for (const std::uint32_t items : lanes_.items) {
         last_.push_back({items});
     }

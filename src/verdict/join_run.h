@@ -11,6 +11,7 @@
 #include "puppetri/net/chooser.h"
 #include "puppetri/proof/successions.h"
 #include "puppetri/run/player.h"
+#include "puppetri/scene/beside.h"
 #include "puppetri/stage/stage.h"
 #include "puppetri/verdict/pursue.h"
 #include "puppetri/verdict/witness.h"
@@ -67,6 +68,7 @@ class JoinRun {
 
     const net::Net& net_;
     const MovementLanes& lanes_;
+    scene::Beside beside_;
     stage::Stage stage_;
     run::Player player_;
     std::vector<Seen> seen_;

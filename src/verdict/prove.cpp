@@ -13,6 +13,7 @@
 #include "asked_rules.h"
 #include "builtin_rules.h"
 #include "by_structure.h"
+#include "crossings.h"
 #include "cutting.h"
 #include "growth.h"
 #include "join_rule.h"
@@ -117,6 +118,9 @@ class Prover {
 
     void finish(Work& w) {
         w.done = true;
+        if (has_crossings(net_)) {
+            mind_crossings(theatre_, w.asked.rule, w.verdict);
+        }
         if (host_ && w.verdict.answer != Answer::kUnknown) {
             const std::vector<std::string> more = host_->assumptions(w.asked.rule);
             w.verdict.assumptions.insert(w.verdict.assumptions.end(), more.begin(), more.end());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "puppetri/run/player.h"
+#include "puppetri/scene/beside.h"
 #include "puppetri/stage/stage.h"
 #include "puppetri/verdict/pursue.h"
 
@@ -70,8 +71,10 @@ struct Performers {
         options.firings_per_instant = theatre.firings_per_instant;
         counting.performer = &shortest;
         if (theatre.scene != nullptr) {
-            stage.emplace(theatre.scene->play);
+            beside.emplace(*theatre.scene);
+            stage.emplace(theatre.scene->play, beside->quantities());
             counting.performer = &*stage;
+            options.coupled = beside->coupled(*stage);
         }
         options.host = &counting;
         player.emplace(*theatre.net, options);
@@ -81,6 +84,7 @@ struct Performers {
 
     EventListener listener;
     ShortestHost shortest;
+    std::optional<scene::Beside> beside;
     std::optional<stage::Stage> stage;
     CountingHost counting;
     std::optional<run::Player> player;

@@ -11,10 +11,14 @@ namespace puppetri::verdict {
 
 ScriptPlayer::ScriptPlayer(const scene::Scene& scene, const Witness& witness)
     : witness_(witness),
-      stage_(scene.play),
+      beside_(scene),
+      stage_(scene.play, beside_.quantities()),
       chooser_(witness.choices),
-      player_(scene.net,
-              {.seed = witness.seed, .host = &stage_, .chooser = &chooser_, .beat = scene.beat}) {
+      player_(scene.net, {.seed = witness.seed,
+                          .host = &stage_,
+                          .chooser = &chooser_,
+                          .beat = scene.beat,
+                          .coupled = beside_.coupled(stage_)}) {
     std::vector<run::OutsideEvent> events;
     for (const Witness::Event& e : witness.events) {
         events.push_back({e.at, scene.net.find_event(e.path)});

@@ -7,6 +7,7 @@
 #include "puppetri/net/chooser.h"
 #include "puppetri/proof/plain_net.h"
 #include "puppetri/run/player.h"
+#include "puppetri/scene/beside.h"
 #include "puppetri/scene/scene.h"
 #include "puppetri/stage/stage.h"
 #include "puppetri/verdict/witness.h"
@@ -29,6 +30,7 @@ class ScriptPlayer {
  private:
     static constexpr SimTime kPatience{600 * kTicksPerSecond};
     const Witness& witness_;
+    scene::Beside beside_;
     stage::Stage stage_;
     net::ScriptedChooser chooser_;
     run::Player player_;

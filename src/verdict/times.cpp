@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "crossings.h"
 #include "cutting.h"
 #include "part.h"
 #include "path_witness.h"
@@ -130,6 +131,9 @@ class Timer {
                 a.slowest.emplace();
             }
             answer(q, a);
+            if (has_crossings(net_)) {
+                mind_crossings(a);
+            }
             a.seconds = now_s() - begin;
             out.push_back(std::move(a));
         }

@@ -101,6 +101,9 @@ class Equations final : public Coupled {
     void save(std::vector<std::uint8_t>& out) const override;
     bool restore(std::span<const std::uint8_t> bytes) override;
 
+    // The run is over, and nothing changes any more: goes on up to `at`, whatever it crosses.
+    bool carry_to(SimTime at, Diagnostic& fault);
+
     const std::vector<EquationSystem>& systems() const;
     // A variable, or an output, at any time that next() has gone through; before it as the history
     // says, after it as it was last known. Safe from several threads once the run is over.

@@ -11,6 +11,7 @@
 
 #include "puppetri/net/chooser.h"
 #include "puppetri/run/player.h"
+#include "puppetri/scene/beside.h"
 #include "puppetri/scene/scene.h"
 
 namespace puppetri::scene {
@@ -75,6 +76,7 @@ class Session {
     PerformOptions options_;
     Horizon horizon_;
     run::Limits limits_;
+    Beside beside_;
     stage::Stage stage_;
     std::optional<net::ScriptedChooser> script_;
     run::Player player_;

@@ -15,7 +15,9 @@
 #include "puppetri/base/time.h"
 #include "puppetri/motion/own_movement.h"
 #include "puppetri/net/net.h"
+#include "puppetri/run/equations.h"
 #include "puppetri/scene/file_source.h"
+#include "puppetri/stage/sensors.h"
 #include "puppetri/stage/stage.h"
 
 namespace puppetri::scene {
@@ -49,6 +51,8 @@ struct Scene {
     stage::Play play;               // the cast, and one action per place with `does`
     net::NetDraft draft;            // as elaborated, rules and named states included
     net::Net net;                   // compiled from it
+    std::vector<run::EquationSystem> equations;  // beside the net; props and joints follow them
+    std::vector<stage::Sensor> sensors;
     std::vector<Camera> cameras;
     Diagnostics notes;  // warnings and notes: no errors
 

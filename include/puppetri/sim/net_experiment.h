@@ -22,6 +22,9 @@ class NetExperiment final : public Experiment {
         // called from several threads. Left out: the net has no such places.
         std::unique_ptr<net::MovementHost> (*host)(const void* context) = nullptr;
         const void* context = nullptr;
+        // What goes on continuously beside the net, by the performer that `host` has made, which
+        // owns it.
+        std::vector<run::Coupled*> (*coupled)(net::MovementHost& host) = nullptr;
     };
 
     // The net outlives the experiment.

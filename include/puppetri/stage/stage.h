@@ -4,6 +4,8 @@
 // every prop, and answers how long things take. Afterwards it gives the score and the performance.
 // It never sees a marking.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -35,10 +37,37 @@ struct Action {
     SourceSpan where = {};                // of the call, for diagnostics
 };
 
+// Quantities that change by themselves, by number: what equations say. Times may be asked in any
+// order, up to the one to which the run has come.
+class Quantities {
+ public:
+    virtual ~Quantities() = default;
+    virtual double at(std::uint32_t quantity, SimTime at) const = 0;
+};
+
+// A prop whose centre is where three quantities say, in metres of the world, for as long as nobody
+// holds or throws it.
+struct DrivenProp {
+    motion::PropIndex prop = {};
+    std::array<std::uint32_t, 3> position = {};
+    SourceSpan where = {};
+};
+
+// A degree of freedom that a quantity moves, in radians or metres, whatever else the figure does:
+// laid over every pose; values beyond its range are taken into it.
+struct DrivenDof {
+    motion::ActorIndex actor = {};
+    std::string dof = {};  // "right_shoulder.flex"; one of the figure's
+    std::uint32_t quantity = 0;
+    SourceSpan where = {};
+};
+
 // Everything the stage needs before the run.
 struct Play {
     Cast cast = {};
     std::vector<Action> actions = {};
+    std::vector<DrivenProp> driven_props = {};
+    std::vector<DrivenDof> driven_dofs = {};
 };
 
 // What every action declares for `takes auto`, by net::ActionIndex: for proofs, which cannot
@@ -48,7 +77,8 @@ std::vector<motion::DurationRange> declared_durations(const Play& play);
 class Stage final : public net::MovementHost {
  public:
     // Needs check(play.cast) without errors, and calls that fit their signatures.
-    explicit Stage(Play play);
+    // `quantities` where the play has something driven; without it that stays as it is.
+    explicit Stage(Play play, std::shared_ptr<const Quantities> quantities = nullptr);
     ~Stage() override;
     Stage(Stage&&) noexcept;
     Stage& operator=(Stage&&) noexcept;
@@ -71,6 +101,7 @@ class Stage final : public net::MovementHost {
     // when the take ends.
     void pose(ActorIndex actor, SimTime at, figure::Pose& out) const;
     const figure::Figure& figure(ActorIndex actor) const;
+    Transform world_from_prop(PropIndex prop, SimTime at) const;
 
     // What went wrong or deserves a word so far: why begin answered negative, flights above 9 m/s
     // or 6 m, limbs driven by two movements at once.
