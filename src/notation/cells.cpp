@@ -18,6 +18,7 @@
 #include <string>
 #include <utility>
 
+#include "cell_grid.h"
 #include "kinds.h"
 #include "line.h"
 #include "literal.h"
@@ -32,6 +33,7 @@ using lang::Op;
 
 constexpr std::int64_t kMostCells = 10'000;
 constexpr int kMostRadius = 10;
+constexpr std::size_t kMostNodes = 2'000'000;  // of the formulas of all cells
 // Above what scenes use, so that the figures of one instant follow before anything else happens,
 // in a settled order: the order changes nothing, and provers need not try all of them.
 constexpr std::int64_t kFollows = 1'000'000;
@@ -42,13 +44,9 @@ constexpr std::string_view kStateForm =
 constexpr std::string_view kRuleForm = "FROM -> TO when CONDITION";
 constexpr std::string_view kStartForm = "starts STATE at CELL, or at [CELL, CELL]";
 
-struct Offset {
-    int right = 0, down = 0;
-};
-
 struct Direction {
     std::string_view name;
-    Offset offset;
+    CellGrid::Offset offset;
 };
 constexpr Direction kDirections[] = {
     {"me", {0, 0}},        {"left", {-1, 0}},      {"right", {1, 0}},
@@ -62,6 +60,9 @@ class Cells {
         : block_(block), teller_(block, file, out), body_(out.net.body) {}
 
     void lower() {
+        if (!has_plain_lines(block_, teller_)) {
+            return;
+        }
         const auto each = [this](auto&& wanted, auto&& read) {
             for (const lang::Property& p : block_.properties) {
                 if (wanted(p)) {
@@ -76,7 +77,7 @@ class Cells {
         if (!good()) {
             return;
         }
-        cells_.assign(static_cast<std::size_t>(columns_ * rows_), 0);
+        cells_.assign(static_cast<std::size_t>(grid_.columns * grid_.rows), 0);
         each(is_rule, [this](Line& line, const lang::Property&) { rule(line); });
         each(is_start, [this](Line& line, const lang::Property&) { start(line); });
         make();
@@ -141,34 +142,34 @@ class Cells {
     }
 
     void shape(Line& line, const std::string& what) {
-        if (columns_ != 0) {
+        if (grid_.columns != 0) {
             teller_.error("name-twice", line.span(), "the shape of the cells is said twice",
                           "keep one of the lines");
         }
-        wraps_ = what == "ring" || what == "torus";
-        flat_ = what == "grid" || what == "torus";
-        const Expr* e = line.value(flat_ ? "columns and rows" : "the number of cells");
+        grid_.wraps = what == "ring" || what == "torus";
+        grid_.flat = what == "grid" || what == "torus";
+        const Expr* e = line.value(grid_.flat ? "columns and rows" : "the number of cells");
         if (e == nullptr) {
             return;
         }
-        if (flat_ && (e->kind != ExprKind::kTuple || e->args.size() != 2)) {
+        if (grid_.flat && (e->kind != ExprKind::kTuple || e->args.size() != 2)) {
             teller_.error("syntax", e->span, "a " + what + " has columns and rows",
                           "write " + what + " (40, 30)");
             return;
         }
         const auto columns =
-            literal_whole(flat_ ? e->args[0].value : *e, 1, kMostCells,
-                          flat_ ? "the number of columns" : "the number of cells", teller_);
-        const auto rows =
-            flat_ ? literal_whole(e->args[1].value, 1, kMostCells, "the number of rows", teller_)
-                  : std::optional<std::int64_t>(1);
+            literal_whole(grid_.flat ? e->args[0].value : *e, 1, kMostCells,
+                          grid_.flat ? "the number of columns" : "the number of cells", teller_);
+        const auto rows = grid_.flat ? literal_whole(e->args[1].value, 1, kMostCells,
+                                                     "the number of rows", teller_)
+                                     : std::optional<std::int64_t>(1);
         if (columns && rows && *columns * *rows > kMostCells) {
             teller_.error("net-too-large", e->span,
                           "more than " + std::to_string(kMostCells) + " cells",
                           "write fewer columns or rows");
         } else if (columns && rows) {
-            columns_ = *columns;
-            rows_ = *rows;
+            grid_.columns = *columns;
+            grid_.rows = *rows;
         }
         shape_span_ = line.span();
     }
@@ -178,12 +179,12 @@ class Cells {
             return;
         }
         if (line.word("von_neumann")) {
-            diamond_ = true;
+            grid_.diamond = true;
         } else if (const Expr* e = line.value("a distance, moore or von_neumann")) {
-            radius_ = static_cast<int>(
+            grid_.radius = static_cast<int>(
                 literal_whole(*e, 1, kMostRadius, "the distance of neighbours", teller_)
                     .value_or(1));
-            diamond_ = line.word("von_neumann");
+            grid_.diamond = line.word("von_neumann");
         }
     }
 
@@ -249,7 +250,7 @@ class Cells {
     }
 
     bool good() {
-        if (columns_ == 0) {
+        if (grid_.columns == 0) {
             if (shape_span_ == lang::Span{}) {
                 teller_.error("no-cells", block_.name.span, "there are no cells",
                               "write ring 40, row 40, torus (40, 30) or grid (40, 30)");
@@ -271,11 +272,15 @@ class Cells {
                 states_[s].shown = s == 0 ? '.' : '#';
             }
         }
-        if (wraps_ && !outside_.empty()) {
+        if (!outside_.empty() && !state_of(outside_)) {
+            return false;
+        }
+        grid_.outside = outside_.empty() ? states_[0].name.text : outside_.steps[0].text;
+        if (grid_.wraps && !outside_.empty()) {
             teller_.warn("no-outside", outside_.span, "a ring or torus has no outside",
                          "remove the line");
         }
-        if (wolfram_ && (states_.size() != 2 || flat_)) {
+        if (wolfram_ && (states_.size() != 2 || grid_.flat)) {
             teller_.error("wolfram", wolfram_span_,
                           "the numbers of elementary rules are for rows and rings of two states",
                           "write the rule in lines: FROM -> TO when CONDITION");
@@ -338,21 +343,21 @@ class Cells {
     }
 
     std::optional<std::size_t> cell_of(const Expr& e) {
-        const bool pair = flat_ && e.kind == ExprKind::kTuple && e.args.size() == 2;
-        if (flat_ && !pair) {
+        const bool pair = grid_.flat && e.kind == ExprKind::kTuple && e.args.size() == 2;
+        if (grid_.flat && !pair) {
             teller_.error("syntax", e.span, "a cell is named by its column and row",
                           "write (3, 2): columns from the left, rows from above, both from 1");
             return std::nullopt;
         }
-        const auto column =
-            literal_whole(pair ? e.args[0].value : e, 1, columns_, "the column of a cell", teller_);
+        const auto column = literal_whole(pair ? e.args[0].value : e, 1, grid_.columns,
+                                          "the column of a cell", teller_);
         const auto row =
-            pair ? literal_whole(e.args[1].value, 1, rows_, "the row of a cell", teller_)
+            pair ? literal_whole(e.args[1].value, 1, grid_.rows, "the row of a cell", teller_)
                  : std::optional<std::int64_t>(1);
         if (!column || !row) {
             return std::nullopt;
         }
-        return static_cast<std::size_t>((*row - 1) * columns_ + *column - 1);
+        return static_cast<std::size_t>((*row - 1) * grid_.columns + *column - 1);
     }
 
     void start(Line& line) {
@@ -402,7 +407,7 @@ class Cells {
         } else {
             lines.push_back(&e);
         }
-        if (lines.size() > static_cast<std::size_t>(rows_)) {
+        if (lines.size() > static_cast<std::size_t>(grid_.rows)) {
             teller_.error("out-of-range", e.span, "the pattern has more lines than there are rows",
                           "leave lines out, or make the grid higher");
             return;
@@ -410,10 +415,10 @@ class Cells {
         for (std::size_t row = 0; row < lines.size(); ++row) {
             const Expr& text = *lines[row];
             if (text.kind != ExprKind::kString ||
-                text.text.size() > static_cast<std::size_t>(columns_)) {
+                text.text.size() > static_cast<std::size_t>(grid_.columns)) {
                 teller_.error("out-of-range", text.span,
                               "a line of a pattern is a text of at most " +
-                                  std::to_string(columns_) + " characters",
+                                  std::to_string(grid_.columns) + " characters",
                               "write one character for each cell");
                 return;
             }
@@ -428,66 +433,10 @@ class Cells {
                     return;
                 }
                 s->entered = true;
-                cells_[row * static_cast<std::size_t>(columns_) + column] =
+                cells_[row * static_cast<std::size_t>(grid_.columns) + column] =
                     static_cast<std::size_t>(s - states_.begin());
             }
         }
-    }
-
-    // cell[3], or cell[2][3]: row, then column.
-    lang::Name cell_name(std::string text, std::int64_t column, std::int64_t row,
-                         lang::Span span) const {
-        lang::Name name{std::move(text), {}, span};
-        if (flat_) {
-            name.index.push_back(make_number(Rational{row + 1}, span));
-        }
-        name.index.push_back(make_number(Rational{column + 1}, span));
-        return name;
-    }
-
-    // The state of the cell that lies so far from this one.
-    Expr neighbour(std::int64_t column, std::int64_t row, Offset offset, lang::Span span) {
-        column += offset.right;
-        row += offset.down;
-        if (wraps_) {
-            column = (column % columns_ + columns_) % columns_;
-            row = (row % rows_ + rows_) % rows_;
-        } else if (column < 0 || column >= columns_ || row < 0 || row >= rows_) {
-            return make_reference(outside_.empty() ? states_[0].name.text : outside_.steps[0].text,
-                                  span);
-        }
-        return make_reference(make_path({cell_name("cell", column, row, span)}, span));
-    }
-
-    // How many neighbours are in a state.
-    Expr count(std::int64_t column, std::int64_t row, const lang::Path& state, lang::Span span) {
-        Expr sum;
-        const int high = flat_ ? radius_ : 0;
-        for (int down = -high; down <= high; ++down) {
-            for (int right = -radius_; right <= radius_; ++right) {
-                if ((right == 0 && down == 0) ||
-                    (diamond_ && std::abs(right) + std::abs(down) > radius_)) {
-                    continue;
-                }
-                Expr one = make_binary(Op::kEqual, neighbour(column, row, {right, down}, span),
-                                       make_reference(state));
-                Expr counted = make_number(Rational{1}, span);
-                Expr choice;
-                choice.kind = ExprKind::kConditional;
-                choice.span = span;
-                choice.args.push_back({{}, std::move(one)});
-                choice.args.push_back({{}, std::move(counted)});
-                choice.args.push_back({{}, make_number(Rational{0}, span)});
-                if (!sum) {
-                    sum = std::move(choice);
-                } else if (sum.kind == ExprKind::kBinary) {
-                    sum.args.push_back({{}, std::move(choice)});
-                } else {
-                    sum = make_binary(Op::kAdd, std::move(sum), std::move(choice));
-                }
-            }
-        }
-        return sum;
     }
 
     Expr wrong(lang::Span span, std::string message, std::string remedy) {
@@ -502,11 +451,11 @@ class Cells {
             e.path.steps[0].index.empty()) {
             for (const Direction& d : kDirections) {
                 if (e.path.steps[0].text == d.name) {
-                    if (!flat_ && d.offset.down != 0) {
+                    if (!grid_.flat && d.offset.down != 0) {
                         return wrong(e.span, "a row of cells has no neighbours above and below",
                                      "write left and right, or use a grid");
                     }
-                    return neighbour(column, row, d.offset, e.span);
+                    return grid_.state(column, row, d.offset, e.span);
                 }
             }
             return e;
@@ -518,12 +467,12 @@ class Cells {
                 return wrong(e.span, "count asks how many neighbours are in a state",
                              "write count(" + states_[1].name.text + ")");
             }
-            return count(column, row, e.args[0].value.path, e.span);
+            return grid_.count(column, row, e.args[0].value.path, e.span);
         }
         if (e.kind == ExprKind::kCall && e.path.steps.size() == 1 &&
             e.path.steps[0].text == "cell") {
             std::int64_t by[2] = {0, 0};
-            bool fine = e.args.size() == (flat_ ? 2u : 1u);
+            bool fine = e.args.size() == (grid_.flat ? 2u : 1u);
             for (std::size_t i = 0; fine && i < e.args.size(); ++i) {
                 const auto n = literal_number(e.args[i].value);
                 fine = n && n->whole() && std::abs(n->numerator) <= kMostRadius;
@@ -531,11 +480,11 @@ class Cells {
             }
             if (!fine) {
                 return wrong(e.span, "this is no cell nearby",
-                             flat_ ? "write cell(2, -1): two to the right, one up"
-                                   : "write cell(2): two to the right; cell(-2): to the left");
+                             grid_.flat ? "write cell(2, -1): two to the right, one up"
+                                        : "write cell(2): two to the right; cell(-2): to the left");
             }
-            return neighbour(column, row, {static_cast<int>(by[0]), static_cast<int>(by[1])},
-                             e.span);
+            return grid_.state(column, row, {static_cast<int>(by[0]), static_cast<int>(by[1])},
+                               e.span);
         }
         Expr out = e;
         for (std::size_t i = 0; i < e.args.size(); ++i) {
@@ -544,18 +493,16 @@ class Cells {
         return out;
     }
 
-    bool known(const lang::Path& path) const {
-        return path.steps.size() == 1 && find(path.steps[0].text) != nullptr;
+    static std::size_t nodes(const Expr& e) {
+        std::size_t sum = 1;
+        for (const lang::Argument& a : e.args) {
+            sum += nodes(a.value);
+        }
+        return sum;
     }
 
-    static Expr choose(Expr condition, Expr yes, Expr no) {
-        Expr out;
-        out.kind = ExprKind::kConditional;
-        out.span = condition.span;
-        out.args.push_back({{}, std::move(condition)});
-        out.args.push_back({{}, std::move(yes)});
-        out.args.push_back({{}, std::move(no)});
-        return out;
+    bool known(const lang::Path& path) const {
+        return path.steps.size() == 1 && find(path.steps[0].text) != nullptr;
     }
 
     Expr state_value(std::size_t state, lang::Span span) const {
@@ -564,7 +511,7 @@ class Cells {
 
     // What the cell is in the next step: the first line that applies, else what it is.
     Expr next(std::int64_t column, std::int64_t row) {
-        Expr me = neighbour(column, row, {}, block_.name.span);
+        Expr me = grid_.state(column, row, {}, block_.name.span);
         if (wolfram_) {
             return elementary(column, row);
         }
@@ -575,7 +522,7 @@ class Cells {
             if (r.when) {
                 applies = make_both(std::move(applies), read_at(r.when, column, row));
             }
-            value = choose(std::move(applies), state_value(r.to, r.span), std::move(value));
+            value = make_choice(std::move(applies), state_value(r.to, r.span), std::move(value));
         }
         return value;
     }
@@ -585,19 +532,19 @@ class Cells {
     Expr elementary(std::int64_t column, std::int64_t row) {
         const lang::Span span = wolfram_span_;
         const auto is_one = [&](int right) {
-            return make_binary(Op::kEqual, neighbour(column, row, {right, 0}, span),
+            return make_binary(Op::kEqual, grid_.state(column, row, {right, 0}, span),
                                state_value(1, span));
         };
         const auto leaf = [&](std::int64_t bit) {
             return state_value((*wolfram_ >> bit) & 1 ? 1 : 0, span);
         };
         const auto by_right = [&](std::int64_t high) {
-            return choose(is_one(1), leaf(high + 1), leaf(high));
+            return make_choice(is_one(1), leaf(high + 1), leaf(high));
         };
         const auto by_me = [&](std::int64_t high) {
-            return choose(is_one(0), by_right(high + 2), by_right(high));
+            return make_choice(is_one(0), by_right(high + 2), by_right(high));
         };
-        return choose(is_one(-1), by_me(4), by_me(0));
+        return make_choice(is_one(-1), by_me(4), by_me(0));
     }
 
     // The figure of each cell, in the order of the cells: [ana, rui], or fan for fan[1], fan[2],
@@ -617,11 +564,11 @@ class Cells {
                 out.push_back(a.value.path);
             }
         } else if (figures_.kind == ExprKind::kPath) {
-            for (std::int64_t row = 0; row < rows_; ++row) {
-                for (std::int64_t column = 0; column < columns_; ++column) {
+            for (std::int64_t row = 0; row < grid_.rows; ++row) {
+                for (std::int64_t column = 0; column < grid_.columns; ++column) {
                     lang::Path path = figures_.path;
                     path.steps.back() =
-                        cell_name(path.steps.back().text, column, row, figures_.span);
+                        grid_.name(path.steps.back().text, column, row, figures_.span);
                     out.push_back(std::move(path));
                 }
             }
@@ -643,14 +590,19 @@ class Cells {
                              "add a line: ... -> " + s.name.text + ", or remove it");
             }
         }
-        if (!outside_.empty() && !state_of(outside_)) {
-            return;
-        }
         const auto is_said = [](const lang::Property& p) { return is_rule(p); };
         if (!wolfram_ &&
             std::none_of(block_.properties.begin(), block_.properties.end(), is_said)) {
             teller_.error("no-rule", block_.name.span, "no line says how cells change",
                           "write " + std::string(kRuleForm));
+            return;
+        }
+        const std::size_t each = wolfram_ ? 15 : nodes(next(grid_.columns / 2, grid_.rows / 2));
+        if (each > kMostNodes / cells_.size()) {
+            teller_.error("net-too-large", block_.name.span,
+                          "the rules of all cells together have more than " +
+                              std::to_string(kMostNodes) + " terms",
+                          "use fewer cells, or a smaller neighbourhood");
             return;
         }
         const lang::Span span = shape_span_;
@@ -670,17 +622,17 @@ class Cells {
             make_transition(make_name("step", period_.span), {make_path("clock", period_.span)},
                             {make_path("clock", period_.span)});
         step.is_public = true;
-        for (std::int64_t row = 0; row < rows_; ++row) {
-            for (std::int64_t column = 0; column < columns_; ++column) {
+        for (std::int64_t row = 0; row < grid_.rows; ++row) {
+            for (std::int64_t column = 0; column < grid_.columns; ++column) {
                 lang::Data cell;
-                cell.name = cell_name("cell", column, row, span);
+                cell.name = grid_.name("cell", column, row, span);
                 cell.is_public = true;
                 cell.type = make_reference("State", span);
                 cell.initial = state_value(at(column, row), span);
                 cell.span = span;
                 body_.data.push_back(std::move(cell));
                 step.assignments.push_back(make_assignment(
-                    make_path({cell_name("cell", column, row, span)}, span), next(column, row)));
+                    make_path({grid_.name("cell", column, row, span)}, span), next(column, row)));
             }
         }
         body_.transitions.push_back(std::move(step));
@@ -700,7 +652,7 @@ class Cells {
     }
 
     std::size_t at(std::int64_t column, std::int64_t row) const {
-        return cells_[static_cast<std::size_t>(row * columns_ + column)];
+        return cells_[static_cast<std::size_t>(row * grid_.columns + column)];
     }
 
     static void give_name(Expr& e, const lang::Path& who) {
@@ -718,9 +670,9 @@ class Cells {
     // A place for each state that does not continue another, and a transition for each change that
     // a line allows.
     void figure(std::int64_t number, const lang::Path& who) {
-        const std::int64_t column = number % columns_, row = number / columns_;
+        const std::int64_t column = number % grid_.columns, row = number / grid_.columns;
         const auto named = [&](const std::string& text, lang::Span span) {
-            return cell_name(text, column, row, span);
+            return grid_.name(text, column, row, span);
         };
         for (std::size_t s = 0; s < states_.size(); ++s) {
             const State& state = states_[s];
@@ -759,7 +711,7 @@ class Cells {
                                 {make_path({named(states_[to].name.text, span)}, span)});
             t.inputs.push_back(make_arc(lang::ArcKind::kTakeNow,
                                         make_path({named(states_[from].name.text, span)}, span)));
-            t.guard = make_binary(Op::kEqual, neighbour(column, row, {}, span),
+            t.guard = make_binary(Op::kEqual, grid_.state(column, row, {}, span),
                                   state_value(change.second, span));
             t.priority = make_number(Rational{kFollows + number % kOrders}, span);
             t.is_public = true;
@@ -771,9 +723,7 @@ class Cells {
     const lang::Block& block_;
     Teller teller_;
     lang::Body& body_;
-    std::int64_t columns_ = 0, rows_ = 1;
-    bool wraps_ = false, flat_ = false, diamond_ = false;
-    int radius_ = 1;
+    CellGrid grid_;
     int errors_ = 0;
     Expr period_, figures_;
     lang::Path outside_;

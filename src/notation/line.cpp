@@ -102,4 +102,20 @@ bool read_data(Line& line, lang::Data& made) {
     return true;
 }
 
+bool has_plain_lines(const lang::Block& block, Teller& teller) {
+    bool plain = true;
+    for (const lang::Property& p : block.properties) {
+        if (p.name.steps.size() != 1 || !p.name.steps[0].index.empty()) {
+            teller.error("syntax", p.name.span, "a line begins with one name, without an index",
+                         "write names such as left_leg, or 'left leg' in quotes");
+            plain = false;
+        }
+        if (p.has_children) {
+            teller.error("syntax", p.span, "this line has lines of its own", "remove the braces");
+            plain = false;
+        }
+    }
+    return plain;
+}
+
 }  // namespace puppetri::notation

@@ -70,4 +70,8 @@ class Line {
 // Gives   false where it is broken, and has told so.
 bool read_data(Line& line, lang::Data& made);
 
+// Tells where a line of the block begins with more than one name, or has lines of its own in
+// braces; gives whether none does.
+bool has_plain_lines(const lang::Block& block, Teller& teller);
+
 }  // namespace puppetri::notation

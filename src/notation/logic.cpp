@@ -51,6 +51,9 @@ class Logic {
         : block_(block), teller_(block, file, out), body_(out.net.body) {}
 
     void lower() {
+        if (!has_plain_lines(block_, teller_)) {
+            return;
+        }
         for (const lang::Property& p : block_.properties) {
             Line line(p, teller_);
             const std::string& word = line.name().steps[0].text;

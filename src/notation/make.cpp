@@ -75,6 +75,16 @@ Expr make_both(Expr a, Expr b) {
     return make_binary(lang::Op::kAnd, std::move(a), std::move(b));
 }
 
+Expr make_choice(Expr condition, Expr yes, Expr no) {
+    Expr e;
+    e.kind = ExprKind::kConditional;
+    e.span = condition.span;
+    e.args.push_back({{}, std::move(condition)});
+    e.args.push_back({{}, std::move(yes)});
+    e.args.push_back({{}, std::move(no)});
+    return e;
+}
+
 Expr make_call(Path path, std::vector<Expr> positional, Span span) {
     Expr e = make_reference(std::move(path));
     e.kind = ExprKind::kCall;

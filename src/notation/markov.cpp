@@ -37,6 +37,9 @@ class Markov {
         : block_(block), teller_(block, file, out), body_(out.net.body) {}
 
     void lower() {
+        if (!has_plain_lines(block_, teller_)) {
+            return;
+        }
         for (const lang::Property& p : block_.properties) {
             if (is_period(p)) {
                 Line line(p, teller_);

@@ -56,6 +56,9 @@ class Messages {
         : block_(block), teller_(block, file, out), body_(out.net.body) {}
 
     void lower() {
+        if (!has_plain_lines(block_, teller_)) {
+            return;
+        }
         const auto each = [this](std::string_view word, auto&& read) {
             for (const lang::Property& p : block_.properties) {
                 if (kind_of(p) == word) {

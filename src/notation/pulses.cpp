@@ -127,6 +127,9 @@ class Pulses {
         : block_(block), teller_(block, file, out), body_(out.net.body) {}
 
     void lower() {
+        if (!has_plain_lines(block_, teller_)) {
+            return;
+        }
         const auto each = [this](auto&& wanted, auto&& read) {
             for (const lang::Property& p : block_.properties) {
                 if (wanted(p)) {

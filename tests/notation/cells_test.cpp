@@ -236,11 +236,11 @@ TEST_CASE("a state that continues another is no new movement [unit]") {
         "sits\n";
     const std::size_t at = longer.find(" sits -> stands");
     longer.replace(at, longer.find(" starts") - at, more);
-    CHECK(log_of(longer, 3) ==
-          std::vector<std::string>{"1 s l.step", "1 s l.sits_to_stands[2]", "2 s l.step",
-                                   "2 s l.sits_to_stands[3]", "2 s l.stays_to_sits[1]",
-                                   "3 s l.step", "3 s l.sits_to_stands[1]",
-                                   "3 s l.stays_to_sits[2]"});
+    CHECK(log_of(longer, 3) == std::vector<std::string>{"1 s l.step", "1 s l.sits_to_stands[2]",
+                                                        "2 s l.step", "2 s l.sits_to_stands[3]",
+                                                        "2 s l.stays_to_sits[1]", "3 s l.step",
+                                                        "3 s l.stays_to_sits[2]",
+                                                        "3 s l.sits_to_stands[1]"});
 }
 
 TEST_CASE("defects of cells are told where they stand [unit]") {
@@ -277,6 +277,28 @@ cells c {
     CHECK_FALSE(
         defects_of("use c as l\ncells c {\n torus (200, 200)\n every 1 s\n a\n b\n a -> b\n}\n")
             .empty());
+}
+
+TEST_CASE(
+    "rules that would fill the memory are refused, and so are names and lines of odd forms "
+    "[hostile]") {
+    const auto first_code = [](const std::string& body) {
+        const Diagnostics list = defects_of(body);
+        REQUIRE_FALSE(list.empty());
+        return list[0].code;
+    };
+    CHECK(
+        first_code(
+            "use c as l\ncells c {\n torus (100, 100)\n every 1 s\n neighbours 10\n a\n b\n a -> b "
+            "when count(b) > 3\n}\n") == "net-too-large");
+    CHECK(first_code("use c as l\ncells c {\n ring 3\n every 1 s\n a.x\n b\n a -> b\n}\n") ==
+          "syntax");
+    CHECK(first_code("use c as l\ncells c {\n ring 3\n every 1 s\n a { b 1 }\n b\n a -> b\n}\n") ==
+          "syntax");
+    CHECK(first_code("use c as l\nlogic c {\n a[1] = yes delay 1 s\n}\n") == "syntax");
+    CHECK(first_code("use c as l\nmarkov c {\n a starts { }\n}\n") == "syntax");
+    CHECK(first_code("use c as l\nmessages c {\n a.b sends x to y\n}\n") == "syntax");
+    CHECK(first_code("use c as l\npulses c {\n every 1 s\n a.b starts 1\n}\n") == "syntax");
 }
 
 }  // namespace
