@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "mesh_builder.h"
 #include "puppetri/base/elementary.h"
@@ -169,6 +170,63 @@ Mesh make_box_mesh(Vec3 size_m, const Palette& palette) {
     }
     mesh.parts.push_back(
         {1, edges_from, static_cast<std::uint32_t>(mesh.triangles.size()) - edges_from});
+    return mesh;
+}
+
+Mesh make_cylinder_mesh(double diameter_m, double height_m, const Palette& palette) {
+    PUP_REQUIRE(diameter_m > 0 && height_m > 0);
+    Mesh mesh;
+    mesh.materials = {{"cylinder", palette.main, 0.6f, 0}};
+    const double r = diameter_m / 2, h = height_m / 2;
+    const double bevel = 0.12 * std::min(r, h);
+    constexpr int kSectors = 48;
+    // Rings of one edge twice, with the normals of either side: flat faces and a sharp bevel.
+    const std::array<ProfilePoint, 6> lower{{{0, -h, 0, -1},
+                                             {r - bevel, -h, 0, -1},
+                                             {r - bevel, -h, 1, -1},
+                                             {r, -h + bevel, 1, -1},
+                                             {r, -h + bevel, 1, 0},
+                                             {0, 0, 0, 0}}};
+    const std::array<ProfilePoint, 5> upper{{{r, h - bevel, 1, 0},
+                                             {r, h - bevel, 1, 1},
+                                             {r - bevel, h, 1, 1},
+                                             {r - bevel, h, 0, 1},
+                                             {0, h, 0, 1}}};
+    std::vector<ProfilePoint> profile(lower.begin(), lower.end() - 1);
+    profile.insert(profile.end(), upper.begin(), upper.end());
+    append_revolution(mesh, profile, kSectors, {}, 0, nullptr);
+    return mesh;
+}
+
+Mesh make_fork_mesh(Vec3 size_m, const Palette& palette) {
+    PUP_REQUIRE(size_m.x > 0 && size_m.y > 0 && size_m.z > 0);
+    constexpr int kTines = 4;
+    const double w = size_m.x, h = size_m.y, l = size_m.z;
+    Mesh mesh;
+    const auto add = [&](Vec3 size, Vec3 centre) {
+        const Mesh part = make_box_mesh(size, palette);
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        const auto triangle = static_cast<std::uint32_t>(mesh.triangles.size());
+        mesh.materials = part.materials;
+        for (const auto& p : part.positions) {
+            mesh.positions.push_back(floats(Vec3{p[0], p[1], p[2]} + centre));
+        }
+        mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
+        for (const auto& t : part.triangles) {
+            mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        }
+        for (const MeshPart& p : part.parts) {
+            mesh.parts.push_back({p.material, p.first_triangle + triangle, p.triangle_count});
+        }
+    };
+    add({0.42 * w, h, 0.5 * l}, {0, 0, -0.25 * l});        // the handle
+    add({0.25 * w, 0.7 * h, 0.14 * l}, {0, 0, 0.06 * l});  // the neck
+    add({w, 0.6 * h, 0.13 * l}, {0, 0, 0.18 * l});
+    for (int i = 0; i < kTines; ++i) {
+        const double x = w * ((i + 0.5) / kTines - 0.5);
+        add({0.13 * w, 0.5 * h, 0.27 * l}, {x * (1 - 0.13 / kTines), 0, 0.365 * l});
+    }
+    sort_parts(mesh);
     return mesh;
 }
 

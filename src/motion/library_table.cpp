@@ -163,6 +163,17 @@ constexpr Parameter kPickUp[] = {
 constexpr Parameter kHandOver[] = {
     kBallParameter,
     {.name = "to", .types = types({kActor}), .doc = "who stands before it with free hands"}};
+constexpr Parameter kTake[] = {
+    {.name = "thing", .types = types({kProp}), .doc = "what lies within reach of that hand"},
+    kHandParameter};
+constexpr Parameter kLay[] = {
+    {.name = "thing", .types = types({kProp}), .doc = "what that hand holds"},
+    {.name = "at", .types = types({kPoint}), .doc = "where its centre shall lie"},
+    kHandParameter,
+    {.name = "facing",
+     .types = types({kAngle}),
+     .optional = true,
+     .doc = "its heading there; without, that of the figure"}};
 constexpr Parameter kHug[] = {
     {.name = "who", .types = types({kActor}), .doc = "who stands close before it"}};
 constexpr Parameter kBow[] = {{.name = "deep",
@@ -301,6 +312,12 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .shortest = milliseconds(1800),
      .longest = milliseconds(2500),
      .doc = "bends the knees, jumps with both feet, and lands where it stood"},
+    {.name = "lay",
+     .parameters = kLay,
+     .limbs = kArms,
+     .shortest = milliseconds(1200),
+     .longest = milliseconds(1200),
+     .doc = "lays down what one hand holds, and draws the hand back"},
     {.name = "look",
      .parameters = kLook,
      .limbs = limbs_of({Limb::kBody}),
@@ -388,6 +405,12 @@ constexpr auto kTable = std::to_array<MovementSignature>({
      .shortest = milliseconds(800),
      .longest = milliseconds(800),
      .doc = "swings this arm forward"},
+    {.name = "take",
+     .parameters = kTake,
+     .limbs = kArms,
+     .shortest = milliseconds(1200),
+     .longest = milliseconds(1200),
+     .doc = "takes a thing that lies within reach with one hand"},
     {.name = "throw",
      .parameters = kThrow,
      .limbs = kWhole,

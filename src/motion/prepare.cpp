@@ -20,6 +20,7 @@
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/jump.h"
 #include "puppetri/motion/look.h"
+#include "puppetri/motion/one_hand.h"
 #include "puppetri/motion/own_movement.h"
 #include "puppetri/motion/sitting.h"
 #include "puppetri/motion/turn.h"
@@ -89,6 +90,8 @@ class Preparer {
     void stand_for(double own_s);
     void pick_up();
     void hand_over();
+    void take();
+    void lay();
     void hug();
 
     StepKind half_kind(Side transfer) const;
@@ -435,6 +438,64 @@ void Preparer::hand_over() {
     result_.meeting_world = meeting.meeting_world;
 }
 
+void Preparer::take() {
+    const PropIndex thing = result_.prop = arguments_.prop("thing");
+    const Side side = arguments_.side("side");
+    result_.gaze = {.kind = GazeKind::kProp, .prop = thing};
+    const TakeInHandSpec none;
+    if (hands_full(none.duration_s)) {
+        return;
+    }
+    const PropState& state = around_.props[thing.value];
+    const bool full = std::any_of(
+        around_.props.begin(), around_.props.end(),
+        [&](const PropState& p) { return p.held_by == around_.me && p.in_hand == side; });
+    const OneHandMove made = make_take_in_hand(
+        context_, {.side = side,
+                   .world_from_thing = {state.rotation_world, state.position_world},
+                   .size_m = state.size_m});
+    result_.movement = made.movement;
+    if (full || state.held_by.valid()) {
+        note("hands-full", "it takes what somebody holds, or with a hand that holds something",
+             "let the thing lie, and let the hand be free");
+    } else if (made.residual_m > kCatch_m) {
+        note("out-of-reach", "the thing lies too far off: the hand closes on air",
+             "let the figure come nearer, or take the other hand");
+    } else {
+        result_.one_hand = side;
+        result_.takes_after = made.touches;
+    }
+}
+
+void Preparer::lay() {
+    const PropIndex thing = result_.prop = arguments_.prop("thing");
+    const PropState& state = around_.props[thing.value];
+    const Side side = arguments_.side("side");
+    if (state.held_by != around_.me || state.in_hand != side) {
+        note("not-held", "it lays down what that hand does not hold", "let it take it first");
+        result_.movement = make_idle(
+            context_, {.limbs = limb_set(arm_of(side)), .duration_s = LayDownSpec{}.duration_s});
+        return;
+    }
+    const double heading = arguments_.find("facing") != nullptr
+                               ? arguments_.number("facing")
+                               : heading_of(context_.now.pelvis.rotation_world);
+    const auto* at = arguments_.get<Vec3>("at");
+    PUP_REQUIRE(at != nullptr);
+    const OneHandMove made = make_lay_down(context_, {.side = side,
+                                                      .hand_from_thing = state.hand_from_thing,
+                                                      .world_from_thing = {about_y(heading), *at}});
+    result_.movement = made.movement;
+    result_.gaze = {.kind = GazeKind::kPoint, .point_world = *at};
+    if (made.residual_m > kCatch_m) {
+        note("out-of-reach", "the arm does not reach that place: it goes on holding the thing",
+             "choose a nearer place");
+    } else {
+        result_.one_hand = side;
+        result_.lays_after = made.touches;
+    }
+}
+
 void Preparer::hug() {
     const auto* who = arguments_.get<ActorIndex>("who");
     PUP_REQUIRE(who != nullptr);
@@ -623,6 +684,10 @@ Prepared Preparer::run() {
         pick_up();
     } else if (name == "hand_over") {
         hand_over();
+    } else if (name == "take") {
+        take();
+    } else if (name == "lay") {
+        lay();
     } else if (name == "hug") {
         hug();
     } else if (name == "bow") {

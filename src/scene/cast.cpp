@@ -17,6 +17,27 @@ const lang::CastMember* find_member(const lang::File& file, std::string_view nam
     return nullptr;
 }
 
+// What a prop is called, and how large it is when nothing is said.
+struct PropKind {
+    const char* name;
+    stage::PropShape shape;
+    Vec3 size_m;
+};
+constexpr PropKind kPropKinds[] = {
+    {"sphere", stage::PropShape::kSphere, {0.22, 0.22, 0.22}},
+    {"box", stage::PropShape::kBox, {0.22, 0.22, 0.22}},
+    {"cylinder", stage::PropShape::kCylinder, {0.22, 0.03, 0.22}},
+    {"fork", stage::PropShape::kFork, {0.026, 0.006, 0.19}},
+};
+const PropKind* prop_kind_named(std::string_view name) {
+    for (const PropKind& kind : kPropKinds) {
+        if (name == kind.name) {
+            return &kind;
+        }
+    }
+    return nullptr;
+}
+
 std::string name_of(const lang::Property& property) { return lang::to_text(property.name); }
 
 }  // namespace
@@ -28,6 +49,12 @@ std::optional<Term> Elaboration::cast_member(std::string_view name, std::uint32_
     }
     const lang::CastMember* member = find_member(library_.files[file], name);
     if (member == nullptr) {
+        for (const std::uint32_t other : library_.casts[file]) {
+            // Its own members, not those that it imports in turn: casts that import each other end.
+            if (find_member(library_.files[other], name) != nullptr) {
+                return cast_member(name, other);
+            }
+        }
         return std::nullopt;
     }
     cast_[{file, std::string(name)}] = Nothing{};  // whoever asks while it is being made has a ring
@@ -71,11 +98,9 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
         cast.actors[index.value] = std::move(actor);
         return ActorTerm{index};
     }
-    if (kind == "sphere" || kind == "box") {
+    if (const PropKind* prop_kind = prop_kind_named(kind)) {
         const motion::PropIndex index{static_cast<std::uint32_t>(cast.props.size())};
-        stage::Prop prop{
-            .name = name,
-            .shape = kind == "box" ? stage::PropShape::kBox : stage::PropShape::kSphere};
+        stage::Prop prop{.name = name, .shape = prop_kind->shape, .size_m = prop_kind->size_m};
         cast.props.push_back(prop);
         fill_prop(member, scope, prop);
         cast.props[index.value] = std::move(prop);
@@ -90,7 +115,8 @@ Term Elaboration::add_cast_member(const lang::CastMember& member) {
         return SetTerm{index};
     }
     unknown(member.kind.span, "kind of cast", kind,
-            {"mannequin", "stick", "character", "creature", "linkage", "sphere", "box", "set"});
+            {"mannequin", "stick", "character", "creature", "linkage", "sphere", "box", "cylinder",
+             "fork", "set"});
     return Nothing{};
 }
 
@@ -180,13 +206,20 @@ void Elaboration::fill_figure(const lang::CastMember& member, const Scope& scope
 
 void Elaboration::fill_prop(const lang::CastMember& member, const Scope& scope, stage::Prop& prop) {
     const bool sphere = prop.shape == stage::PropShape::kSphere;
+    const bool cylinder = prop.shape == stage::PropShape::kCylinder;
     for (const lang::Property& p : member.properties) {
         const std::string name = name_of(p);
-        if (name == "diameter" && sphere) {
+        if (name == "diameter" && (sphere || cylinder)) {
             if (const auto d = quantity_of(p, scope, lang::dimension::kLength, "diameter 22 cm")) {
-                prop.size_m = {*d, *d, *d};
+                prop.size_m = {*d, cylinder ? prop.size_m.y : *d, *d};
             }
-        } else if (name == "size" && !sphere) {
+        } else if (name == "height" && cylinder) {
+            prop.size_m.y = quantity_of(p, scope, lang::dimension::kLength, "height 10 cm")
+                                .value_or(prop.size_m.y);
+        } else if (name == "facing") {
+            prop.heading_rad = quantity_of(p, scope, lang::dimension::kAngle, "facing 90 deg")
+                                   .value_or(prop.heading_rad);
+        } else if (name == "size" && !sphere && !cylinder) {
             if (has_values(p, 1, "size (0.4, 0.3, 0.2) m")) {
                 prop.size_m = point_of(p.values[0], scope).value_or(prop.size_m);
             }
@@ -210,7 +243,12 @@ void Elaboration::fill_prop(const lang::CastMember& member, const Scope& scope, 
         } else if (name == "palette") {
             prop.palette = palette_of(p).value_or(prop.palette);
         } else {
-            unknown_property(p, {sphere ? "diameter" : "size", "mass", "at", "held", "palette"});
+            std::vector<std::string> known{"mass", "at", "facing", "held", "palette"};
+            known.emplace_back(sphere || cylinder ? "diameter" : "size");
+            if (cylinder) {
+                known.emplace_back("height");
+            }
+            unknown_property(p, known);
         }
     }
 }
@@ -267,6 +305,11 @@ void Elaboration::complete_cast() {
             continue;
         }
         cast_member(member.name.text, 0);
+    }
+    for (const std::uint32_t other : library_.casts[0]) {
+        for (const lang::CastMember& member : library_.files[other].body.cast) {
+            cast_member(member.name.text, other);
+        }
     }
 }
 

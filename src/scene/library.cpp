@@ -51,6 +51,7 @@ class Loader {
         }
         library_.files.push_back(std::move(parsed.file));
         library_.texts.emplace_back();
+        library_.casts.emplace_back();
         numbers_[path] = number;
         std::map<std::string, Declaration> names;
         const lang::Body& body = library_.files.back().body;
@@ -156,6 +157,12 @@ class Loader {
         for (std::size_t i = 0; i < imports.size(); ++i) {
             const std::uint32_t from = imported_[file][i];
             for (const lang::Name& name : imports[i].names) {
+                if (name.text == "cast") {
+                    if (from != kMissing) {
+                        library_.casts[file].push_back(from);
+                    }
+                    continue;
+                }
                 if (from == kMissing) {
                     declare(library_.visible[file], name, {});
                     continue;

@@ -32,6 +32,8 @@ struct Library {
     std::deque<lang::Net> lowered;  // what blocks of notations stand for
     std::vector<const lang::Block*> lowered_from;             // these blocks, by the same number
     std::vector<std::map<std::string, Declaration>> visible;  // by file
+    std::vector<std::vector<std::uint32_t>>
+        casts;  // by file: the files of which it imports the whole cast
     std::vector<std::map<std::string, std::string>>
         texts;  // by file: of its event files, by the path as written
     std::vector<motion::OwnMovementPtr> movements;  // of the embedding program

@@ -83,11 +83,16 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
         const bool gives = prepared.gives_to.valid();
         const Grasp grasp{now + prepared.grasps_after, number,
                           gives ? prepared.gives_to : activity.actor, prepared.prop};
-        grasps.insert(std::upper_bound(grasps.begin(), grasps.end(), grasp,
-                                       [](const Grasp& a, const Grasp& b) { return a.at < b.at; }),
-                      grasp);
+        add_grasp(grasp);
         if (gives) {
             receive_from_hands(grasp, prepared.meeting_world);
+        }
+    }
+    for (const auto& [after, lays] :
+         {std::pair(prepared.takes_after, false), std::pair(prepared.lays_after, true)}) {
+        if (after.ticks >= 0) {
+            add_grasp(
+                {now + after, number, activity.actor, prepared.prop, prepared.one_hand, lays});
         }
     }
     if (prepared.releases_prop) {

@@ -8,6 +8,8 @@
 namespace puppetri::stage {
 namespace {
 
+constexpr double kLeast_m = 0.002;  // of a prop
+
 bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 class Checker {
@@ -57,11 +59,10 @@ Diagnostics check(const Cast& cast) {
     for (const Prop& p : cast.props) {
         const std::string element = "prop " + p.name;
         c.name("prop", p.name);
-        const bool box = p.shape == PropShape::kBox;
-        c.need(p.size_m.x >= 0.01 && p.size_m.x <= 10 &&
-                   (!box || (p.size_m.y >= 0.01 && p.size_m.y <= 10 && p.size_m.z >= 0.01 &&
-                             p.size_m.z <= 10)),
-               "size-out-of-range", element, "the size is not between 1 cm and 10 m",
+        const bool ball = p.shape == PropShape::kSphere;
+        c.need(p.size_m.x >= kLeast_m && p.size_m.x <= 10 && p.size_m.y >= kLeast_m &&
+                   p.size_m.y <= 10 && p.size_m.z >= kLeast_m && p.size_m.z <= 10,
+               "size-out-of-range", element, "the size is not between 2 mm and 10 m",
                "give a size such as 22 cm");
         c.need(p.mass_kg > 0 && p.mass_kg <= 1000, "mass-out-of-range", element,
                "the mass is not above 0 and at most 1000 kg", "give a mass such as 0.4 kg");
@@ -73,7 +74,7 @@ Diagnostics check(const Cast& cast) {
                    cast.actors[p.held_by.value].humanoid(),
                "no-hands", element, "its holder is a creature, which has no hands",
                "let it lie on the floor, or give it to a humanoid");
-        c.need(!p.held_by.valid() || (!box && p.size_m.x <= 0.4), "cannot-hold", element,
+        c.need(!p.held_by.valid() || (ball && p.size_m.x <= 0.4), "cannot-hold", element,
                "two hands hold only a sphere of at most 40 cm",
                "make it smaller, or let it lie on the floor");
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Who has one prop, from when on: hands, the air, or the floor. One holder at any time, by
-// construction.
+// Who has one prop, from when on: hands, one hand, the air, or the floor (or what else it lies on).
+// One holder at any time, by construction.
 #pragma once
 #include <vector>
 
@@ -9,17 +9,19 @@
 
 namespace puppetri::stage {
 
-enum class Holding : std::uint8_t { kHands, kFlight, kFloor };
+enum class Holding : std::uint8_t { kHands, kOneHand, kFlight, kFloor };
 
 struct Hold {
     SimTime from = {};
     Holding kind = Holding::kFloor;
-    motion::ActorIndex actor = {};   // kHands; kFlight: who threw it, or none
+    motion::ActorIndex actor = {};   // kHands, kOneHand; kFlight: who threw it, or none
     motion::ActorIndex target = {};  // kFlight: who shall catch it, or none
     Quat hands_from_prop =
         {};  // kHands: how it lies between the hands (its spin goes on from catch to catch)
-    motion::Flight flight = {};  // kFlight
-    Transform lies = {};         // kFloor
+    motion::Side hand = motion::Side::kRight;  // kOneHand
+    Transform hand_from_prop = {};             // kOneHand
+    motion::Flight flight = {};                // kFlight
+    Transform lies = {};                       // kFloor
 };
 
 class PropTimeline {

@@ -68,8 +68,15 @@ struct Stage::Data {
         std::uint32_t activity;
         ActorIndex actor;
         PropIndex prop;
+        std::optional<motion::Side> one_hand = {};
+        bool lays = false;  // opens and leaves the prop where it is
     };
     std::vector<Grasp> grasps;
+    void add_grasp(const Grasp& grasp) {
+        grasps.insert(std::upper_bound(grasps.begin(), grasps.end(), grasp,
+                                       [](const Grasp& a, const Grasp& b) { return a.at < b.at; }),
+                      grasp);
+    }
 
     // Per actor, for the surroundings.
     struct Waiting {
@@ -138,7 +145,8 @@ struct Stage::Data {
         if (prop.held_by.valid()) {
             line.take({.from = SimTime{-1}, .kind = Holding::kHands, .actor = prop.held_by});
         } else {
-            line.take({.from = SimTime{-1}, .lies = {{}, prop.position_world}});
+            line.take(
+                {.from = SimTime{-1}, .lies = {about_y(prop.heading_rad), prop.position_world}});
         }
         take.props.push_back(std::move(line));
     }
@@ -194,9 +202,18 @@ struct Stage::Data {
         }
         for (std::uint32_t i = 0; i < take.props.size(); ++i) {
             const Hold& hold = take.props[i].at(at, true);
-            seen.props.push_back({take.world_from_prop(PropIndex{i}, at, true).translation,
-                                  take.radius(PropIndex{i}),
-                                  hold.kind == Holding::kHands ? hold.actor : ActorIndex{}});
+            const bool one_hand = hold.kind == Holding::kOneHand;
+            const Transform where = take.world_from_prop(PropIndex{i}, at, true);
+            motion::PropState state{
+                where.translation, take.radius(PropIndex{i}),
+                hold.kind == Holding::kHands || one_hand ? hold.actor : ActorIndex{}};
+            if (one_hand) {
+                state.in_hand = hold.hand;
+                state.hand_from_thing = hold.hand_from_prop;
+            }
+            state.rotation_world = where.rotation;
+            state.size_m = play.cast.props[i].size_m;
+            seen.props.push_back(state);
         }
         for (const Set& set : play.cast.sets) {
             seen.sets.push_back({set.position_world, set.direction_rad});
@@ -242,6 +259,10 @@ struct Stage::Data {
         if (activity.cut && activity.left < grasp.at) {
             return;
         }
+        if (grasp.one_hand) {
+            close_one_hand(grasp);
+            return;
+        }
         const Transform prop = take.world_from_prop(grasp.prop, grasp.at, true);
         const Transform hands = take.between_hands(grasp.actor, take.radius(grasp.prop), grasp.at);
         const Hold& hold = take.props[grasp.prop.value].at(grasp.at);
@@ -256,6 +277,30 @@ struct Stage::Data {
              .kind = Holding::kHands,
              .actor = grasp.actor,
              .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation)});
+    }
+
+    // One hand that takes a prop, or leaves it where it is. The stage has it exactly as it was: so
+    // nothing jumps.
+    void close_one_hand(const Grasp& grasp) {
+        const Hold& hold = take.props[grasp.prop.value].at(grasp.at);
+        const bool mine = hold.kind == Holding::kOneHand && hold.actor == grasp.actor &&
+                          hold.hand == *grasp.one_hand;
+        const bool somebodys = hold.kind == Holding::kOneHand || hold.kind == Holding::kHands;
+        const Transform prop = take.world_from_prop(grasp.prop, grasp.at, true);
+        if (grasp.lays && mine) {
+            take.props[grasp.prop.value].take({.from = grasp.at, .lies = prop});
+        } else if (!grasp.lays && !somebodys) {
+            take.props[grasp.prop.value].take(
+                {.from = grasp.at,
+                 .kind = Holding::kOneHand,
+                 .actor = grasp.actor,
+                 .hand = *grasp.one_hand,
+                 .hand_from_prop =
+                     inverse(take.world_from_hand(grasp.actor, *grasp.one_hand, grasp.at)) * prop});
+        } else {
+            warn(activities[grasp.activity].action, "out-of-reach",
+                 "somebody else has taken the thing meanwhile", "let one of them wait");
+        }
     }
 
     // Limbs that were cut and that nobody took at that instant come to rest.

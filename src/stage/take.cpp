@@ -49,6 +49,14 @@ Transform Take::between_hands(ActorIndex actor, double radius_m, SimTime at, boo
         world_from_joint(f.skeleton, pose_of_holder, f.arms[figure::kRight].hand), radius_m);
 }
 
+Transform Take::world_from_hand(ActorIndex actor, motion::Side side, SimTime at,
+                                bool before) const {
+    static thread_local figure::Pose pose_of_holder;  // scratch, as above
+    pose(actor, at, pose_of_holder, before);
+    const figure::Figure& f = *actors[actor.value].figure;
+    return world_from_joint(f.skeleton, pose_of_holder, f.arms[motion::index_of(side)].hand);
+}
+
 Transform Take::world_from_prop(PropIndex prop, SimTime at, bool before) const {
     const Hold& hold = props[prop.value].at(at, before);
     const auto& driven = driven_props[prop.value];
@@ -62,6 +70,11 @@ Transform Take::world_from_prop(PropIndex prop, SimTime at, bool before) const {
         case Holding::kHands: {
             Transform t = between_hands(hold.actor, radius(prop), at, before);
             t.rotation = normalized(t.rotation * hold.hands_from_prop);
+            return t;
+        }
+        case Holding::kOneHand: {
+            Transform t = world_from_hand(hold.actor, hold.hand, at, before) * hold.hand_from_prop;
+            t.rotation = normalized(t.rotation);
             return t;
         }
         case Holding::kFlight:
@@ -105,10 +118,16 @@ bool Take::gaze_target(ActorIndex actor, SimTime at, Vec3& target_world) const {
             break;
     }
     const Hold& hold = props[gaze.prop.value].at(at);
-    if (hold.kind == Holding::kHands && hold.actor == actor) {
+    const bool one_hand = hold.kind == Holding::kOneHand;
+    if ((hold.kind == Holding::kHands || one_hand) && hold.actor == actor) {
         return false;  // nobody stares at what it has in its own hands
     }
-    if (hold.kind == Holding::kHands) {
+    if (one_hand) {
+        const ActorTake& holder = actors[hold.actor.value];
+        motion::Controls controls;
+        holder.timeline.sample(at, controls);
+        target_world = motion::world_from_palm(*holder.figure, controls, hold.hand).translation;
+    } else if (hold.kind == Holding::kHands) {
         const ActorTake& holder = actors[hold.actor.value];
         motion::Controls controls;
         holder.timeline.sample(at, controls);

@@ -70,6 +70,10 @@ struct Take {
     Transform between_hands(ActorIndex actor, double radius_m, SimTime at,
                             bool before = false) const;
 
+    // The joint of one hand.
+    Transform world_from_hand(ActorIndex actor, motion::Side side, SimTime at,
+                              bool before = false) const;
+
     // Where the eyes of an actor go, if they follow something: false leaves the head to the
     // movement. Reads controls only, not poses.
     bool gaze_target(ActorIndex actor, SimTime at, Vec3& target_world) const;

@@ -80,9 +80,7 @@ class TakePerformance final : public Performance {
         for (std::size_t i = 0; i < take_.props.size(); ++i) {
             const Prop& prop = take_.cast.props[i];
             const figure::Palette& palette = palette_named(prop.palette);
-            prop_meshes_.push_back(prop.shape == PropShape::kSphere
-                                       ? figure::make_ball_mesh(prop.size_m.x, palette)
-                                       : figure::make_box_mesh(prop.size_m, palette));
+            prop_meshes_.push_back(mesh_of(prop, palette));
             prop_views_.push_back({prop.name, prop.shape, prop.size_m, &prop_meshes_[i]});
         }
     }
@@ -114,6 +112,10 @@ class TakePerformance final : public Performance {
         if (hold.kind == Holding::kHands) {
             return take_.cast.actors[hold.actor.value].name + ".hands";
         }
+        if (hold.kind == Holding::kOneHand) {
+            return take_.cast.actors[hold.actor.value].name +
+                   (hold.hand == motion::Side::kLeft ? ".left_hand" : ".right_hand");
+        }
         return hold.kind == Holding::kFlight && inside(at) < hold.flight.rest() ? "air" : "floor";
     }
     motion::Phase phase(ActorIndex actor, motion::Limb limb, SimTime at) const override {
@@ -122,6 +124,20 @@ class TakePerformance final : public Performance {
     }
 
  private:
+    static figure::Mesh mesh_of(const Prop& prop, const figure::Palette& palette) {
+        switch (prop.shape) {
+            case PropShape::kSphere:
+                return figure::make_ball_mesh(prop.size_m.x, palette);
+            case PropShape::kCylinder:
+                return figure::make_cylinder_mesh(prop.size_m.x, prop.size_m.y, palette);
+            case PropShape::kFork:
+                return figure::make_fork_mesh(prop.size_m, palette);
+            case PropShape::kBox:
+                break;
+        }
+        return figure::make_box_mesh(prop.size_m, palette);
+    }
+
     void show_character(const Actor& actor) {
         const figure::Character& c = *actor.character;
         actor_views_.push_back({actor.name, &c.skeleton, &c.mesh,

@@ -107,6 +107,14 @@ LimbSet driven_limbs(const BoundCall& call) {
     if (call.subject.kind == SubjectKind::kLimb) {
         limbs = limbs.with(call.subject.limb);
     }
+    // What is done with one hand leaves the other alone.
+    if (limbs == motion::kBothArms && call.own == nullptr) {
+        if (const motion::ArgumentValue* given = call.find("side")) {
+            if (const auto* side = std::get_if<motion::Side>(given)) {
+                limbs = motion::limb_set(motion::arm_of(*side));
+            }
+        }
+    }
     return limbs;
 }
 
@@ -140,10 +148,10 @@ Swings swings_of(const BoundCall& call, bool calm) {
         const bool right = pelvis || limbs.has(Limb::kRightLeg);
         return {left, right, left && right};
     }
-    if (is_one_of(
-            m, {"support",   "idle", "stand",   "carry",         "hold",           "reach", "point",
-                "aim",       "look", "swing",   "swing_forward", "swing_backward", "bow",   "eat",
-                "hand_over", "hug",  "pick_up", "sit",           "stand_up",       "wave"})) {
+    if (is_one_of(m, {"support",  "idle", "stand",     "carry", "hold",          "reach",
+                      "point",    "aim",  "look",      "swing", "swing_forward", "swing_backward",
+                      "bow",      "eat",  "hand_over", "hug",   "pick_up",       "sit",
+                      "stand_up", "wave", "take",      "lay"})) {
         return {};
     }
     return anything;

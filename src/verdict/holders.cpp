@@ -76,7 +76,8 @@ std::optional<Holders::Way> Holders::find_way(std::uint32_t prop) {
             continue;
         }
         const motion::BoundCall& call = play_.actions[action.value].call;
-        if (call.movement == "pick_up" || call.movement == "hand_over") {
+        if (call.movement == "pick_up" || call.movement == "hand_over" || call.movement == "take" ||
+            call.movement == "lay") {
             return std::nullopt;  // the hands change in the middle of it
         }
         const bool flies = call.subject.kind == motion::SubjectKind::kProp;

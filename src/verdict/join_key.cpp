@@ -41,7 +41,7 @@ struct Words {
     std::string text(motion::PropIndex v) const {
         const stage::Prop& p = cast.props[v.value];
         return "prop " + number(static_cast<std::int64_t>(p.shape)) + number(p.size_m.x) +
-               number(p.size_m.y) + number(p.size_m.z) + number(p.mass_kg) +
+               number(p.size_m.y) + number(p.size_m.z) + number(p.mass_kg) + number(p.heading_rad) +
                (p.held_by.valid() ? text(p.held_by) : seen_from(me, p.position_world));
     }
     std::string text(motion::SetIndex v) const {

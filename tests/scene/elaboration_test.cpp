@@ -78,6 +78,23 @@ place q tokens 1
 
 }  // namespace
 
+TEST_CASE("a whole cast is imported, and names of it mean its members [unit]") {
+    MemoryFiles files;
+    files.add("scene.pup",
+              "language 1\nscene \"s\"\nuntil 1 s\nimport cast, nod from \"seats.pup\"\n"
+              "import cast from \"scene.pup\"\n"
+              "place p does ana.nod() tokens 1\ncast { rui: mannequin { at (1, 0, 0) m } }\n");
+    files.add(
+        "seats.pup",
+        "language 1\ncast {\n ana: mannequin\n stool: cylinder { height 40 cm }\n}\n"
+        "movement nod(me: actor) { takes 1 s; me.head.flex = 5 deg }\nnet none { place p }\n");
+    const Scene scene = must(load(files, "scene.pup"));
+    CHECK(scene.play.cast.actors.size() == 2);
+    REQUIRE(scene.play.cast.props.size() == 1);
+    CHECK(scene.play.cast.props[0].size_m.y == doctest::Approx(0.4));
+    CHECK(scene.play.cast.actors[scene.play.actions[0].call.subject.actor.value].name == "ana");
+}
+
 TEST_CASE("instances may name each other in any order, and roles carry their parameters [unit]") {
     const Scene scene = from_text(
         "net n(me: actor, other: n, k: int = other.j, j: int = 2) {\n public place P takes k * 1 "

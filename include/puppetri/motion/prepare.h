@@ -25,6 +25,11 @@ struct PropState {
     Vec3 position_world = {};  // of the centre
     double radius_m = 0;
     ActorIndex held_by = {};  // none: in the air or on the floor
+    // In one hand of that actor; otherwise, where there is a holder, in both.
+    std::optional<Side> in_hand = {};
+    Quat rotation_world = {};
+    Vec3 size_m = {};                // a sphere's diameter in x, y and z
+    Transform hand_from_thing = {};  // of in_hand
 };
 
 struct SetState {
@@ -58,6 +63,9 @@ struct Prepared {
     SimTime grasps_after{-1};
     ActorIndex gives_to = {};
     Vec3 meeting_world = {};
+    // So long after its start this hand takes `prop`, or lays it down; negative: never.
+    std::optional<Side> one_hand = {};
+    SimTime takes_after{-1}, lays_after{-1};
     bool releases_prop = false;                 // at its end the hands let `prop` go (throw)
     std::optional<Vec3> catches_at_world = {};  // it waits there with open hands for `prop` (ready)
     Gaze gaze = {};

@@ -37,10 +37,12 @@ struct Actor {
 struct Prop {
     std::string name = {};
     PropShape shape = PropShape::kSphere;
-    Vec3 size_m{0.22, 0.22, 0.22};  // a sphere's diameter in x
+    Vec3 size_m{0.22, 0.22,
+                0.22};  // across, up, along; diameters of spheres and cylinders in x and z
     double mass_kg = 0.4;
     ActorIndex held_by = {};   // in both hands at the start; none: lies at position_world
     Vec3 position_world = {};  // of its centre
+    double heading_rad = 0;    // 0: its own +Z is the world's, pi/2: +X
     std::string palette = "red";
 };
 

@@ -41,7 +41,7 @@ struct StageEvent {
     std::string name, actor, limb, prop;  // empty where it does not apply
 };
 
-enum class PropShape : std::uint8_t { kSphere, kBox };
+enum class PropShape : std::uint8_t { kSphere, kBox, kCylinder, kFork };
 
 struct ActorView {
     std::string name;
@@ -54,7 +54,7 @@ struct ActorView {
 struct PropView {
     std::string name;
     PropShape shape = PropShape::kSphere;
-    Vec3 size_m;  // a sphere's diameter in x
+    Vec3 size_m;  // across, up, along; a sphere's diameter in all three
     const figure::Mesh* mesh = nullptr;
 };
 
