@@ -5,7 +5,7 @@
 //   import dinner from "dinner.tuples"
 //   use dinner(man1: ana, man2: rui, RESTING: rest(), EATING1: lift(), EATING2: taste()) as d
 // The tuple `24 man1 EATING1` becomes the place `man1_24`, which lasts from the object's tuple
-// before until frame 24.
+// before until frame 24. Frame 0 is at the parameter `begin`, usually 0 s.
 #include <algorithm>
 #include <map>
 
@@ -44,6 +44,11 @@ class TupleNet {
         }
         for (const KeyframeTuple& t : *tuples) {
             add_parameter(net, t.event, "movement", t.line);
+        }
+        if (!tuples->empty()) {  // when frame 0 is
+            add_parameter(net, "begin", "time", tuples->front().line);
+            net.parameters.back().default_value =
+                make_number(Rational{0}, net.parameters.back().span, "s");
         }
         lang::End end;
         end.span = net.span;
@@ -124,15 +129,22 @@ class TupleNet {
             place.does = make_call(
                 make_path({make_name(t.object, span), make_name(t.event, span)}, span), {}, span);
             place.takes = make_duration(make_number(Rational{until - before}, span, "frames"));
+            lang::Path from;
             if (i == 0) {
-                give_token(place);
+                lang::Place waits = make_place(make_name(t.object + "_waits", span));
+                waits.is_public = true;
+                waits.takes = make_duration(make_reference("begin", span));
+                give_token(waits);
+                from = make_path(waits.name.text, span);
+                body.places.push_back(std::move(waits));
             } else {
-                lang::Transition next =
-                    make_transition(make_name(t.object + "_to_" + std::to_string(t.frame), span),
-                                    {place_of(list[i - 1], span)}, {place_of(t, span)});
-                next.is_public = true;
-                body.transitions.push_back(std::move(next));
+                from = place_of(list[i - 1], span);
             }
+            lang::Transition next =
+                make_transition(make_name(t.object + "_to_" + std::to_string(t.frame), span),
+                                {std::move(from)}, {place_of(t, span)});
+            next.is_public = true;
+            body.transitions.push_back(std::move(next));
             body.places.push_back(std::move(place));
             before = until;
         }
