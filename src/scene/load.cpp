@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "elaboration.h"
+#include "puppetri/net/queueing.h"
 #include "puppetri/scene/scene.h"
 
 namespace puppetri::scene {
@@ -188,6 +189,7 @@ Loaded load_all(FileSource& files, const std::string& path,
             }
         } else {
             append(out.diagnostics, net->notes());
+            append(out.diagnostics, net::growing_queues(scene.scene.draft));
             scene.scene.net = std::move(*net);
         }
     }
