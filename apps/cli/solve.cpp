@@ -15,6 +15,7 @@
 #include "puppetri/io/json_writer.h"
 #include "puppetri/proof/markov_net.h"
 #include "puppetri/scene/scene.h"
+#include "puppetri/sim/solved_queues.h"
 #include "terminal.h"
 
 namespace puppetri::cli {
@@ -80,6 +81,87 @@ std::optional<net::Formula> state_named(const net::Net& net, const std::string& 
     return std::nullopt;
 }
 
+// `of`: "7 states", "3 stations by their product form".
+int tell(const Arguments& arguments, const std::vector<Row>& rows, const char* count_name,
+         std::size_t count, const char* of, double residual) {
+    const bool solved = residual <= kMostResidual;
+    if (arguments.given("--json")) {
+        io::JsonWriter json;
+        json.begin_object();
+        json.member(count_name, static_cast<std::int64_t>(count));
+        json.member("residual", residual);
+        json.member("solved", solved);
+        json.key("values").begin_object();
+        for (const Row& r : rows) {
+            json.member(r.name, r.value);
+        }
+        json.end_object();
+        json.end_object();
+        std::puts(json.take().c_str());
+    } else if (solved) {
+        std::size_t width = 0;
+        for (const Row& r : rows) {
+            width = std::max(width, r.name.size());
+        }
+        for (const Row& r : rows) {
+            std::printf("%-*s  %12.8g %s\n", static_cast<int>(width), r.name.c_str(), r.value,
+                        r.unit.c_str());
+        }
+        char text[80];
+        std::snprintf(text, sizeof text, "%zu %s%s, residual %.1e", count, count_name, of,
+                      residual);
+        say(text);
+    }
+    if (!solved) {
+        say("UNKNOWN: the equations of the chain did not come to rest");
+        return kUnknown;
+    }
+    return kFine;
+}
+
+// The draft's number of what the net calls by the same path.
+template <class List>
+std::uint32_t number_in(const List& list, std::string_view path) {
+    const auto found = std::find_if(list.begin(), list.end(),
+                                    [&](const auto& element) { return element.path == path; });
+    return static_cast<std::uint32_t>(found - list.begin());
+}
+
+// The long run as a product over stations. Nothing where it has no such form, or where the form
+// does not tell a measure that was asked for: then the chain is to be solved.
+std::optional<int> solve_as_queues(const Arguments& arguments, const scene::Scene& scene,
+                                   const std::vector<sim::Metric>& metrics) {
+    Diagnostics growing = net::growing_queues(scene.draft);
+    if (!growing.empty()) {
+        for (Diagnostic& d : growing) {
+            d.severity = Severity::kError;
+            d.message += ", and there is no long run";
+        }
+        say_diagnostics(growing);
+        return kBadInput;
+    }
+    const auto solved = sim::solve_queues(scene.draft);
+    if (!solved) {
+        return std::nullopt;
+    }
+    std::vector<Row> rows;
+    for (const sim::Metric& m : metrics) {
+        sim::Metric in_draft = m;
+        in_draft.element =
+            sim::of_transition(m.kind)
+                ? number_in(scene.draft.transitions, scene.net.transition({m.element}).path)
+                : number_in(scene.draft.places, scene.net.place({m.element}).path);
+        const std::optional<double> value = solved->value(in_draft);
+        if (value) {
+            rows.push_back({sim::name_of(scene.net, m), *value, sim::unit_of(m.kind)});
+        } else if (arguments.given("--measure")) {
+            return std::nullopt;
+        }
+    }
+    return tell(arguments, rows, "stations", solved->loads.size(), " by their product form",
+                solved->residual);
+}
+
 int solve(const Arguments& arguments) {
     const auto watched = WatchedBudget::from(arguments);
     if (!watched) {
@@ -128,6 +210,11 @@ int solve(const Arguments& arguments) {
     if (metrics.empty()) {
         metrics = sim::all_metrics(net);
         std::erase_if(metrics, [&](const sim::Metric& m) { return !solvable(m.kind, !at); });
+    }
+    if (scene != nullptr && !at && atoms.empty()) {
+        if (const std::optional<int> told = solve_as_queues(arguments, *scene, metrics)) {
+            return *told;
+        }
     }
     const MarkovNet markov =
         proof::markov_net({net,
@@ -182,38 +269,7 @@ int solve(const Arguments& arguments) {
                 {sim::name_of(net, m), value_of(markov, s.values, m), sim::unit_of(m.kind)});
         }
     }
-    const bool solved = residual <= kMostResidual;
-    if (arguments.given("--json")) {
-        io::JsonWriter json;
-        json.begin_object();
-        json.member("states", static_cast<std::int64_t>(markov.chain.size()));
-        json.member("residual", residual);
-        json.member("solved", solved);
-        json.key("values").begin_object();
-        for (const Row& r : rows) {
-            json.member(r.name, r.value);
-        }
-        json.end_object();
-        json.end_object();
-        std::puts(json.take().c_str());
-    } else if (solved) {
-        std::size_t width = 0;
-        for (const Row& r : rows) {
-            width = std::max(width, r.name.size());
-        }
-        for (const Row& r : rows) {
-            std::printf("%-*s  %12.8g %s\n", static_cast<int>(width), r.name.c_str(), r.value,
-                        r.unit.c_str());
-        }
-        char text[80];
-        std::snprintf(text, sizeof text, "%u states, residual %.1e", markov.chain.size(), residual);
-        say(text);
-    }
-    if (!solved) {
-        say("UNKNOWN: the equations of the chain did not come to rest");
-        return kUnknown;
-    }
-    return kFine;
+    return tell(arguments, rows, "states", markov.chain.size(), "", residual);
 }
 
 }  // namespace
@@ -237,7 +293,10 @@ Command solve_command() {
         "one in steps. Its long run, its state at an instant, the time until something happens "
         "and the probability\n"
         "that it ever does are solved, and the residual of the equations is printed. Ties go by "
-        "`odds`, priorities hold, `servers` count. What is in the way is "
+        "`odds`, priorities hold, `servers` count. The long run of a network of queues that is a "
+        "product over its\n"
+        "stations (Jackson; closed: mean value analysis) is told in that form. What is in the way "
+        "is "
         "named; exit 3 then.\n\n"
         "Measures are those of `puppetri sweep`: PLACE.tokens, PLACE.busy, PLACE.stay, "
         "TRANSITION.rate.\n\n"

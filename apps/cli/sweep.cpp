@@ -240,15 +240,30 @@ int sweep(const Arguments& arguments) {
     result.level = plan.level;
     plan.seed = result.seed;
     std::vector<scene::Scene> scenes;
+    Diagnostics growing;
     for (const std::vector<scene::Setting>& settings : grid(request->varied)) {
         auto scene = load_point(path, settings);
         if (!scene) {
             say_diagnostics(scene.error());
             return kBadInput;
         }
+        for (const Diagnostic& d : scene->notes) {
+            const bool told = std::any_of(growing.begin(), growing.end(), [&](const Diagnostic& g) {
+                return g.where == d.where && g.message == d.message;
+            });
+            if (d.code == "grows-without-bound" && !told) {
+                growing.push_back(d);
+            }
+        }
         scenes.push_back(std::move(*scene));
         result.points.push_back({settings, {}});
     }
+    if (!request->until && !request->firings && !scenes.front().horizon.given()) {
+        for (Diagnostic& d : growing) {  // what would be asked for is a steady state
+            d.severity = Severity::kError;
+        }
+    }
+    say_diagnostics(growing);
     // The horizon: asked for, or the scene's
     const scene::Scene& any = scenes.front();
     run::Limits limits;

@@ -55,9 +55,13 @@ Law law_of(const DurationDraft& d) {
     }
 }
 
+bool has_guard(const TransitionDraft& t) {
+    return t.guard && !(t.guard->is_literal() && t.guard->literal_value() != 0);
+}
+
 // Nothing but taking and giving: no condition, no delay, no event.
 bool is_plain(const TransitionDraft& t) {
-    return !t.guard && !t.delay && !t.holding && t.events.empty() &&
+    return !has_guard(t) && !t.delay && !t.holding && t.events.empty() &&
            std::none_of(t.inputs.begin(), t.inputs.end(), [](const ArcDraft& a) {
                return a.kind != ArcKind::kTake ||
                       std::any_of(a.pattern.begin(), a.pattern.end(),
@@ -67,7 +71,7 @@ bool is_plain(const TransitionDraft& t) {
 
 // The same, but that a token may be taken before it is ready.
 bool is_plain_now(const TransitionDraft& t) {
-    return !t.guard && !t.delay && !t.holding && t.events.empty() && t.inputs.size() == 1 &&
+    return !has_guard(t) && !t.delay && !t.holding && t.events.empty() && t.inputs.size() == 1 &&
            t.inputs[0].kind == ArcKind::kTakeNow;
 }
 
@@ -335,7 +339,7 @@ class Finder {
         }
         for (std::uint32_t t = 0; t < draft_.transitions.size(); ++t) {
             const TransitionDraft& tick = draft_.transitions[t];
-            if (!tick.delay || !tick.inputs.empty() || tick.guard || !tick.events.empty() ||
+            if (!tick.delay || !tick.inputs.empty() || has_guard(tick) || !tick.events.empty() ||
                 tick.holding || tick.delay->servers != 1) {
                 continue;
             }

@@ -441,6 +441,21 @@ class EventGraph {
         return events_[event].starts ? nullptr : law;
     }
 
+    // On the state that an event has made, or on its arguments: anything but numbers and parameters
+    // of the graph.
+    bool depends(const Expr& e, const EventNode& from) const {
+        if (e.kind == ExprKind::kPath && e.path.steps.size() == 1) {
+            const std::string& name = e.path.steps[0].text;
+            return std::none_of(block_.parameters.begin(), block_.parameters.end(),
+                                [&](const lang::Parameter& p) { return p.name.text == name; }) ||
+                   std::any_of(from.parameters.begin(), from.parameters.end(),
+                               [&](const lang::Parameter& p) { return p.name.text == name; });
+        }
+        return (e.kind != ExprKind::kNone && e.args.empty() && !is_number(e)) ||
+               std::any_of(e.args.begin(), e.args.end(),
+                           [&](const lang::Argument& a) { return depends(a.value, from); });
+    }
+
     static bool is_number(const Expr& e) { return e.kind == ExprKind::kNumber; }
 
     void build() {
@@ -519,7 +534,7 @@ class EventGraph {
         const bool by_list = law_of(e.to) != nullptr;
         const bool drawn = !by_list && is_drawn(e.after);
         const bool reads_state =
-            !e.arguments.empty() || (e.after && !by_list && !drawn && !is_number(e.after));
+            !e.arguments.empty() || (!by_list && !drawn && depends(e.after, events_[e.from]));
         Arc gives = arc(ArcKind::kGive, drawn ? e.name + "_draw" : to.list(), e.span);
         gives.pattern = given(e);
         if (e.after && !by_list && !drawn) {

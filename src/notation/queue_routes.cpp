@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Routing: each customer that leaves one node goes one way, and is taken in, lost, or waits for
 // room there.
+#include <optional>
+
 #include "make.h"
 #include "queue_builder.h"
 
@@ -40,6 +42,19 @@ Expr one_minus(const Expr& p) {
 }
 
 Expr not_of(const Expr& a) { return make_unary(Op::kNot, a); }
+
+// Of probabilities that are numbers.
+std::optional<Rational> known_sum(const std::vector<const Route*>& routes) {
+    std::optional<Rational> sum = Rational{0, 1};
+    for (const Route* r : routes) {
+        if (r->probability.kind == lang::ExprKind::kNumber && r->probability.unit.empty()) {
+            sum = sum ? add(*sum, r->probability.number) : sum;
+        } else if (r->probability) {
+            return std::nullopt;
+        }
+    }
+    return sum;
+}
 
 bool is_number(const Expr& e) { return e.kind == lang::ExprKind::kNumber; }
 
@@ -201,7 +216,9 @@ void QueueBuilder::emit(const Exit& exit, const std::vector<const Route*>& route
         }
         Expr odds = r->probability;
         if (r == rest && sum) {
-            odds = one_minus(sum);
+            const std::optional<Rational> others = known_sum(routes);
+            const auto left = others ? subtract({1, 1}, *others) : std::nullopt;
+            odds = left ? make_number(*left, r->span) : one_minus(sum);
         }
         if (is_zero(odds)) {
             continue;
