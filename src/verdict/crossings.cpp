@@ -17,6 +17,12 @@ bool really_happens(const scene::Scene& scene, const Witness& witness) {
     if (witness.violates_after == Witness::kNone || witness.lasso_from != Witness::kNone) {
         return false;
     }
+    // A crossing that was made to occur, instead of coming by itself.
+    for (const Witness::Event& e : witness.events) {
+        if (scene.net.declarations().events[scene.net.find_event(e.path).value].crossing) {
+            return false;
+        }
+    }
     ScriptPlayer player(scene, witness);
     for (const Witness::Step& step : witness.steps) {
         if (!player.step() || player.player().now() != step.at ||

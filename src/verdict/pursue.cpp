@@ -222,7 +222,8 @@ class Attempt {
 
     bool push_wanted(bool here) {
         const auto event = track_->wanted_event(here);
-        if (!event) {
+        // Crossings come by themselves, or not at all.
+        if (!event || theatre_.net->declarations().events[*event].crossing) {
             return false;
         }
         player_.push(net::EventIndex{*event});
