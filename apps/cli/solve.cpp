@@ -279,8 +279,8 @@ Command solve_command() {
         {"scene", Value::kText, "SCENE", "a .pup file with a scene, or a net of PIPE (.xml)", true},
         {"--measure", Value::kTexts, "MEASURE", "what to compute; without: everything", false},
         {"--at", Value::kText, "T", "at this time instead of in the long run", false},
-        {"--reach", Value::kText, "STATE", "a named state or a place: the mean time until it holds",
-         false},
+        {"--reach", Value::kText, "STATE",
+         "a named state or a place: how probable and how soon it is", false},
         {"--within", Value::kText, "T", "and the probability that it does within T", false},
         {"--json", Value::kFlag, "", "as one JSON object on stdout", false}};
     for (Option& option : budget_options()) {
@@ -289,15 +289,14 @@ Command solve_command() {
     return {
         "solve", "means and probabilities of a Markov chain or net, computed instead of estimated",
         "Where all durations and delays are exponential or none, a net is a Markov chain; where "
-        "all are constant,\n"
-        "one in steps. Its long run, its state at an instant, the time until something happens "
-        "and the probability\n"
-        "that it ever does are solved, and the residual of the equations is printed. Ties go by "
-        "`odds`, priorities hold, `servers` count. The long run of a network of queues that is a "
-        "product over its\n"
-        "stations (Jackson; closed: mean value analysis) is told in that form. What is in the way "
-        "is "
-        "named; exit 3 then.\n\n"
+        "all are constant, one\n"
+        "in steps. Its long run, its state at an instant, the time until something happens and the "
+        "probability that it\n"
+        "ever does are solved, and the residual of the equations is printed. Ties go by `odds`, "
+        "priorities hold,\n"
+        "`servers` count. The long run of a network of queues that is a product over its stations "
+        "(Jackson; closed:\n"
+        "mean value analysis) is told in that form. What is in the way is named; exit 3 then.\n\n"
         "Measures are those of `puppetri sweep`: PLACE.tokens, PLACE.busy, PLACE.stay, "
         "TRANSITION.rate.\n\n"
         "Examples:\n"
