@@ -267,3 +267,23 @@ TEST_CASE("what is wrong with equations is told at its place, with a remedy [hos
     refuses("x starts at 1 m", "missing-argument",
             "place r tokens 1\nplace s\nu: r -> s when distance(ball) < 1 m\n");
 }
+
+TEST_CASE(
+    "in the example Ana waves at the third bounce, and the ball lies after the twelfth [oracle]") {
+    const Scene scene = example("20_equations/bounce.pup");
+    Log log(scene);
+    const auto done = perform(scene, {.sink = &log});
+    REQUIRE(done);
+    CHECK_FALSE(done->fault.has_value());
+    double t = std::sqrt(4 / 9.81), flight = 2 * t;
+    std::vector<SimTime> bounces;
+    for (int k = 0; k < 12; ++k, flight *= 0.8, t += flight) {
+        bounces.push_back(up_to_ms(t));
+    }
+    CHECK(log.of("bounce") == bounces);
+    CHECK(log.of("greet") == std::vector<SimTime>{bounces[2]});
+    CHECK(log.of("settle") == std::vector<SimTime>{bounces[11]});
+    // It lies where it was put down, on the floor.
+    CHECK(std::fabs(done->performance->world_from_prop({0}, done->end).translation.y - 0.12) <
+          1e-9);
+}
