@@ -335,12 +335,8 @@ class Reader {
         }
         element_ = "transition " + word->text;
         const net::TransitionIndex t = transition_of(*word);
-        if (take(":")) {
-            const TinaToken* label = name("label");
-            if (label == nullptr) {
-                return false;
-            }
-            out_.draft.transitions[t.value].caption = label->text;
+        if (!label_of(out_.draft.transitions[t.value].caption)) {
+            return false;
         }
         if (sign("[") || sign("]")) {
             const TinaToken& start = peek();
@@ -358,26 +354,47 @@ class Reader {
         if (keyword()) {
             return true;
         }
-        bool output = false;
-        while (!keyword()) {
-            if (take("->")) {
-                if (output) {
-                    error("unknown-element", peek(), "a second arrow", "write one arrow");
-                    return false;
-                }
-                output = true;
-                continue;
-            }
+        return arcs([&](bool output) {
             const TinaToken* p = name("place");
             if (p == nullptr) {
                 return false;
             }
             const net::PlaceIndex place = place_of(*p);
             const std::optional<Arc> a = arc(!output);
-            if (!a) {
-                return false;
+            if (a) {
+                add(t, place, *a, output, where(*p));
             }
-            add(t, place, *a, output, where(*p));
+            return a.has_value();
+        });
+    }
+
+    // `: label`, where there is one.
+    bool label_of(std::string& caption) {
+        if (!take(":")) {
+            return true;
+        }
+        const TinaToken* label = name("label");
+        if (label != nullptr) {
+            caption = label->text;
+        }
+        return label != nullptr;
+    }
+
+    // INPUTS -> OUTPUTS: `one` reads one of them, told on which side it stands.
+    template <class F>
+    bool arcs(F one) {
+        bool output = false;
+        while (!keyword()) {
+            if (!take("->")) {
+                if (!one(output)) {
+                    return false;
+                }
+            } else if (output) {
+                error("unknown-element", peek(), "a second arrow", "write one arrow");
+                return false;
+            } else {
+                output = true;
+            }
         }
         if (!output) {
             error("unknown-element", peek(), "the arrow is missing", "write INPUTS -> OUTPUTS");
@@ -405,12 +422,8 @@ class Reader {
         }
         element_ = "place " + word->text;
         const net::PlaceIndex p = place_of(*word);
-        if (take(":")) {
-            const TinaToken* label = name("label");
-            if (label == nullptr) {
-                return false;
-            }
-            out_.draft.places[p.value].caption = label->text;
+        if (!label_of(out_.draft.places[p.value].caption)) {
+            return false;
         }
         if (sign("(")) {
             const TinaToken& start = tokens_[at_++];
@@ -433,31 +446,18 @@ class Reader {
         if (keyword()) {
             return true;
         }
-        bool output = false;
-        while (!keyword()) {
-            if (take("->")) {
-                if (output) {
-                    error("unknown-element", peek(), "a second arrow", "write one arrow");
-                    return false;
-                }
-                output = true;
-                continue;
-            }
+        return arcs([&](bool output) {
             const TinaToken* t = name("transition");
             if (t == nullptr) {
                 return false;
             }
             const net::TransitionIndex transition = transition_of(*t);
             const std::optional<Arc> a = arc(output);  // place -> transition: tests are allowed
-            if (!a) {
-                return false;
+            if (a) {
+                add(transition, p, *a, !output, where(*t));
             }
-            add(transition, p, *a, !output, where(*t));
-        }
-        if (!output) {
-            error("unknown-element", peek(), "the arrow is missing", "write INPUTS -> OUTPUTS");
-        }
-        return output;
+            return a.has_value();
+        });
     }
 
     bool label() {

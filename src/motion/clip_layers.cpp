@@ -107,24 +107,19 @@ void apply_layers(std::span<const ClipLayer> layers, const figure::Skeleton& ske
             continue;
         }
         const Clip& clip = *layer.clip;
-        for (const RotationTrack& track : clip.rotations) {
-            const figure::JointIndex j = skeleton.find(track.target);
-            const double weight = say.weight * layer.mask.weight_of(track.target);
-            if (j.valid() && weight != 0) {
-                Quat& r = pose.parent_from_joint[j.value].rotation;
-                r = combined(r, sample(track, say.t_s, clip.loops, clip.duration_s), weight,
-                             layer.mode);
+        const auto apply = [&](const auto& tracks, auto part_of) {
+            for (const auto& track : tracks) {
+                const figure::JointIndex j = skeleton.find(track.target);
+                const double weight = say.weight * layer.mask.weight_of(track.target);
+                if (j.valid() && weight != 0) {
+                    auto& part = part_of(pose.parent_from_joint[j.value]);
+                    part = combined(part, sample(track, say.t_s, clip.loops, clip.duration_s),
+                                    weight, layer.mode);
+                }
             }
-        }
-        for (const VectorTrack& track : clip.translations) {
-            const figure::JointIndex j = skeleton.find(track.target);
-            const double weight = say.weight * layer.mask.weight_of(track.target);
-            if (j.valid() && weight != 0) {
-                Vec3& t = pose.parent_from_joint[j.value].translation;
-                t = combined(t, sample(track, say.t_s, clip.loops, clip.duration_s), weight,
-                             layer.mode);
-            }
-        }
+        };
+        apply(clip.rotations, [](Transform& t) -> Quat& { return t.rotation; });
+        apply(clip.translations, [](Transform& t) -> Vec3& { return t.translation; });
         if (dofs != nullptr) {
             apply_numbers(layer, say, skeleton, *dofs, pose);
         }

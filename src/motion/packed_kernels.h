@@ -181,9 +181,9 @@ template <std::size_t I, class F>
                                              std::size_t joints, float* matrices) {
     if (I < joints) {
         float* m = matrices + 12 * std::size_t{joint_of[I]};
-        rows[0][I % 4].store_four(I / 4, m);
-        rows[1][I % 4].store_four(I / 4, m + 4);
-        rows[2][I % 4].store_four(I / 4, m + 8);
+        store_four(rows[0][I % 4], I / 4, m);
+        store_four(rows[1][I % 4], I / 4, m + 4);
+        store_four(rows[2][I % 4], I / 4, m + 8);
     }
 }
 template <class F, std::size_t... I>

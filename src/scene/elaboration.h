@@ -130,6 +130,10 @@ struct StateElement : Element<lang::State> {
 // What a name is looked up for among the declarations that a file can see.
 enum class Wanted : std::uint8_t { kNet, kTokenType };
 
+// The operator of the kernel that an operator of the language is. Needs one of two operands that is
+// no interval and not temporal.
+ExprOp kernel_op(lang::Op op);  // expressions.cpp
+
 class Elaboration {
  public:
     explicit Elaboration(const Library& library) : library_(library) {}

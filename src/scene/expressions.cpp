@@ -11,43 +11,6 @@ namespace {
 using lang::ExprKind;
 using lang::Op;
 
-ExprOp kernel_op(Op op) {
-    switch (op) {
-        case Op::kAdd:
-            return ExprOp::kAdd;
-        case Op::kSubtract:
-            return ExprOp::kSubtract;
-        case Op::kMultiply:
-            return ExprOp::kMultiply;
-        case Op::kDivide:
-            return ExprOp::kDivide;
-        case Op::kDiv:
-            return ExprOp::kFloorDivide;
-        case Op::kMod:
-            return ExprOp::kModulo;
-        case Op::kPower:
-            return ExprOp::kPow;
-        case Op::kEqual:
-            return ExprOp::kEqual;
-        case Op::kNotEqual:
-            return ExprOp::kNotEqual;
-        case Op::kLess:
-            return ExprOp::kLess;
-        case Op::kLessEqual:
-            return ExprOp::kLessEqual;
-        case Op::kGreater:
-            return ExprOp::kGreater;
-        case Op::kGreaterEqual:
-            return ExprOp::kGreaterEqual;
-        case Op::kAnd:
-            return ExprOp::kAnd;
-        case Op::kOr:
-            return ExprOp::kOr;
-        default:
-            return ExprOp::kImplies;
-    }
-}
-
 const char* name_for_people(ValueKind kind) {
     switch (kind) {
         case ValueKind::kBool:
@@ -84,6 +47,43 @@ bool is_formula_like(const Term& t) {
 }
 
 }  // namespace
+
+ExprOp kernel_op(Op op) {
+    switch (op) {
+        case Op::kAdd:
+            return ExprOp::kAdd;
+        case Op::kSubtract:
+            return ExprOp::kSubtract;
+        case Op::kMultiply:
+            return ExprOp::kMultiply;
+        case Op::kDivide:
+            return ExprOp::kDivide;
+        case Op::kDiv:
+            return ExprOp::kFloorDivide;
+        case Op::kMod:
+            return ExprOp::kModulo;
+        case Op::kPower:
+            return ExprOp::kPow;
+        case Op::kEqual:
+            return ExprOp::kEqual;
+        case Op::kNotEqual:
+            return ExprOp::kNotEqual;
+        case Op::kLess:
+            return ExprOp::kLess;
+        case Op::kLessEqual:
+            return ExprOp::kLessEqual;
+        case Op::kGreater:
+            return ExprOp::kGreater;
+        case Op::kGreaterEqual:
+            return ExprOp::kGreaterEqual;
+        case Op::kAnd:
+            return ExprOp::kAnd;
+        case Op::kOr:
+            return ExprOp::kOr;
+        default:
+            return ExprOp::kImplies;
+    }
+}
 
 Term Elaboration::evaluate(const lang::Expr& e, const Scope& scope) {
     switch (e.kind) {

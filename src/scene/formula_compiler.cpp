@@ -27,23 +27,6 @@ lang::Dimension times(lang::Dimension a, lang::Dimension b, int sign) {
 bool is_zero(const Expr& e) { return e.is_literal() && real_of_value(e.literal_value()) == 0; }
 bool is_real_literal(const Expr& e) { return e.is_literal() && e.type().kind == ValueKind::kReal; }
 
-ExprOp comparison_of(Op op) {
-    switch (op) {
-        case Op::kEqual:
-            return ExprOp::kEqual;
-        case Op::kNotEqual:
-            return ExprOp::kNotEqual;
-        case Op::kLess:
-            return ExprOp::kLess;
-        case Op::kLessEqual:
-            return ExprOp::kLessEqual;
-        case Op::kGreater:
-            return ExprOp::kGreater;
-        default:
-            return ExprOp::kGreaterEqual;
-    }
-}
-
 }  // namespace
 
 void FormulaCompiler::add_number(const std::string& name, lang::Dimension dimension) {
@@ -406,14 +389,12 @@ std::optional<Expr> FormulaCompiler::truth(const lang::Expr& e) {
     }
     if (e.kind == ExprKind::kBinary) {
         if (e.op == Op::kAnd || e.op == Op::kOr || e.op == Op::kImplies) {
-            const ExprOp op = e.op == Op::kAnd  ? ExprOp::kAnd
-                              : e.op == Op::kOr ? ExprOp::kOr
-                                                : ExprOp::kImplies;
             auto result = truth(e.args[0].value);
             for (std::size_t i = 1; result && i < e.args.size(); ++i) {
                 auto next = truth(e.args[i].value);
-                result = next ? e_.apply(op, {std::move(*result), std::move(*next)}, e.span)
-                              : std::nullopt;
+                result =
+                    next ? e_.apply(kernel_op(e.op), {std::move(*result), std::move(*next)}, e.span)
+                         : std::nullopt;
             }
             return result;
         }
@@ -423,8 +404,7 @@ std::optional<Expr> FormulaCompiler::truth(const lang::Expr& e) {
             if (!a || !b || !same_unit(e, *a, *b)) {
                 return std::nullopt;
             }
-            return e_.apply(comparison_of(e.op), {std::move(a->value), std::move(b->value)},
-                            e.span);
+            return e_.apply(kernel_op(e.op), {std::move(a->value), std::move(b->value)}, e.span);
         }
     }
     // A parameter of type bool is the number 1 or 0.

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "io/corrupt.h"
 #include "io/survive_motion.h"
 
 using namespace puppetri;
@@ -14,8 +15,6 @@ using namespace puppetri::io;
 using namespace puppetri::io::testing;
 
 namespace {
-
-bool long_form() { return std::getenv("PUPPETRI_LONG") != nullptr; }
 
 void survive(const std::string& name, const std::string& bytes, std::size_t at) {
     const std::string law = broken_motion_law(name, bytes);
@@ -50,33 +49,8 @@ TEST_CASE("single-byte corruptions of a motion are survived [hostile]") {
     static constexpr char kMarks[] = "{}[]\",:-+.eE0919 \n\t\0\x01\x7f\x80\xff#f<";
     const std::string marks(kMarks, sizeof kMarks - 1);
     for (const auto& [name, bytes] : motion_corpus()) {
-        if (long_form()) {
-            for (std::size_t at = 0; at < bytes.size(); ++at) {
-                for (int byte = 0; byte < 256; ++byte) {
-                    std::string broken = bytes;
-                    broken[at] = static_cast<char>(byte);
-                    survive(name, broken, at);
-                }
-            }
-            continue;
-        }
-        for (int round = 0; round < 1500; ++round) {
-            std::string broken = bytes;
-            const std::size_t at = random() % bytes.size();
-            switch (random() % 4) {
-                case 0:
-                    broken[at] = marks[random() % marks.size()];
-                    break;
-                case 1:
-                    broken.insert(at, 1, marks[random() % marks.size()]);
-                    break;
-                case 2:
-                    broken.erase(at, 1);
-                    break;
-                default:
-                    broken[at] = static_cast<char>(broken[at] ^ (1 << (random() % 8)));
-            }
-            survive(name, broken, at);
-        }
+        const std::string& file = name;
+        corrupt(bytes, marks, random,
+                [&](const std::string& broken, std::size_t at) { survive(file, broken, at); });
     }
 }

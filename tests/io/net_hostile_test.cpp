@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "io/corrupt.h"
 #include "io/survive_nets.h"
 
 using namespace puppetri;
@@ -14,8 +15,6 @@ using namespace puppetri::io;
 using namespace puppetri::io::testing;
 
 namespace {
-
-bool long_form() { return std::getenv("PUPPETRI_LONG") != nullptr; }
 
 void survive(const std::string& name, const std::string& text) {
     const std::string law = broken_file_law(name, text);
@@ -42,39 +41,14 @@ TEST_CASE("every truncation of a net is survived [hostile]") {
 
 TEST_CASE("single-byte corruptions of a net are survived [hostile]") {
     std::mt19937 random(5);
+    const std::string marks(
+        "<>/\"'&;=[]{}()*?!-,#: \n\t\0\x01\x80\xFF"
+        "0919aw",
+        35);
     for (const auto& [name, text] : net_corpus()) {
-        if (long_form()) {
-            for (std::size_t at = 0; at < text.size(); ++at) {
-                for (int byte = 0; byte < 256; ++byte) {
-                    std::string broken = text;
-                    broken[at] = static_cast<char>(byte);
-                    survive(name, broken);
-                }
-            }
-            continue;
-        }
-        const std::string bytes(
-            "<>/\"'&;=[]{}()*?!-,#: \n\t\0\x01\x80\xFF"
-            "0919aw",
-            35);
-        for (int round = 0; round < 1500; ++round) {
-            std::string broken = text;
-            const std::size_t at = random() % text.size();
-            switch (random() % 4) {
-                case 0:
-                    broken[at] = bytes[random() % bytes.size()];
-                    break;
-                case 1:
-                    broken.insert(at, 1, bytes[random() % bytes.size()]);
-                    break;
-                case 2:
-                    broken.erase(at, 1);
-                    break;
-                default:
-                    broken[at] = static_cast<char>(broken[at] ^ (1 << (random() % 8)));
-            }
-            survive(name, broken);
-        }
+        const std::string& file = name;
+        corrupt(text, marks, random,
+                [&](const std::string& broken, std::size_t) { survive(file, broken); });
     }
 }
 

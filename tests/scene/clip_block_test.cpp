@@ -100,17 +100,7 @@ class SomeClips final : public Assets {
     }
 };
 
-class Files final : public FileSource {
- public:
-    MemoryFiles memory;
-    Result<std::string, FileProblem> read(const std::string& path) override {
-        return memory.read(path);
-    }
-    Assets* assets() override { return &clips_; }
-
- private:
-    SomeClips clips_;
-};
+using Files = FilesWith<SomeClips>;
 
 constexpr const char* kLinkage =
     "linkage { at (1, 0, 0) m, facing 90 deg\n"

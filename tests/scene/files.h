@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "doctest/doctest.h"
+#include "puppetri/scene/assets.h"
 #include "puppetri/scene/scene.h"
 
 namespace puppetri::scene {
@@ -20,6 +21,20 @@ class ExampleFiles final : public FileSource {
         }
         return std::string(std::istreambuf_iterator<char>(in), {});
     }
+};
+
+// Scenes in memory, with somebody who makes characters and clips.
+template <class SomeAssets>
+class FilesWith final : public FileSource {
+ public:
+    MemoryFiles memory;
+    Result<std::string, FileProblem> read(const std::string& path) override {
+        return memory.read(path);
+    }
+    Assets* assets() override { return &assets_; }
+
+ private:
+    SomeAssets assets_;
 };
 
 inline std::string told(const Diagnostics& list) {

@@ -93,17 +93,7 @@ class ArmClip final : public Assets {
     }
 };
 
-class FilesWithClips final : public FileSource {
- public:
-    MemoryFiles memory;
-    Result<std::string, FileProblem> read(const std::string& path) override {
-        return memory.read(path);
-    }
-    Assets* assets() override { return &clips_; }
-
- private:
-    ArmClip clips_;
-};
+using FilesWithClips = FilesWith<ArmClip>;
 
 struct Taken {
     std::uint64_t log_hash = 0;
