@@ -153,7 +153,10 @@ Result<Staged, int> load_and_perform(const Arguments& arguments) {
     say_diagnostics(performed->notes);
     if (performed->fault) {
         say_diagnostics({*performed->fault});
-        return Unexpected<int>(kFailed);
+        // Equations without a solution are bad input; a net that stops has failed.
+        const std::string& code = performed->fault->code;
+        const bool equations = code == "equations-blow-up" || code == "crossings-accumulate";
+        return Unexpected<int>(equations ? kBadInput : kFailed);
     }
     staged.performed = std::move(*performed);
     return staged;
