@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Composition as rewriting of the draft: fused places become one, a rendezvous becomes one
-// transition, `for d` becomes begin -> busy -> end, and a refined place gets its module's start and
+// Composition as rewriting of the draft: fused places become one, what meets becomes one transition
+// (meet.cpp), `for d` becomes begin -> busy -> end, and a refined place gets its module's start and
 // finish into its arcs. Afterwards nothing of these is left, so that simulator and prover never
 // hear of them.
 #include "lower.h"
@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "check.h"
+#include "classes.h"
 #include "puppetri/net/net.h"
 #include "puppetri/net/visit.h"
 
@@ -93,55 +94,16 @@ class Lowering {
                 }
             }
         }
-        return defects_.size() == before;
-    }
-
-    // The classes that lists of indices join: every element's representative is its least member.
-    template <class Lists>
-    static std::vector<std::uint32_t> classes(const Lists& lists, std::size_t count) {
-        std::vector<std::uint32_t> root(count);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            root[i] = i;
-        }
-        const auto find = [&](std::uint32_t i) {
-            while (root[i] != i) {
-                root[i] = root[root[i]];
-                i = root[i];
-            }
-            return i;
-        };
-        for (const auto& list : lists) {
-            for (const auto& other : list) {
-                const std::uint32_t a = find(list.front().value);
-                const std::uint32_t b = find(other.value);
-                root[std::max(a, b)] = std::min(a, b);
-            }
-        }
-        for (std::uint32_t i = 0; i < count; ++i) {
-            root[i] = find(i);
-        }
-        return root;
-    }
-
-    // Drops everything that is not its class's representative; gives old -> new.
-    template <class T>
-    static std::vector<std::uint32_t> compact(std::vector<T>& items,
-                                              const std::vector<std::uint32_t>& root) {
-        std::vector<std::uint32_t> map(root.size());
-        std::uint32_t next = 0;
-        for (std::uint32_t i = 0; i < root.size(); ++i) {
-            if (root[i] == i) {
-                map[i] = next;
-                if (next != i) {
-                    items[next] = std::move(items[i]);
+        for (const ChannelDraft& channel : net().channels) {
+            for (const auto* ends : {&channel.sends, &channel.receives}) {
+                for (const ChannelEnd& end : *ends) {
+                    if (end.transition.value >= transitions) {
+                        bad("transition");
+                    }
                 }
-                ++next;
-            } else {
-                map[i] = map[root[i]];
             }
         }
-        items.resize(next);
-        return map;
+        return defects_.size() == before;
     }
 
     void fuse() {
@@ -209,84 +171,11 @@ class Lowering {
     }
 
     void meet() {
-        const auto root = classes(net().rendezvous, net().transitions.size());
-        for (std::uint32_t i = 0; i < root.size(); ++i) {
-            if (root[i] != i) {
-                merge(net().transitions[root[i]], std::move(net().transitions[i]));
-            }
+        const Met met = meet_transitions(net(), defects_);
+        for (const auto& products : met.products) {
+            out_.transition_map.push_back(products.empty() ? TransitionIndex{}.value
+                                                           : products.front());
         }
-        out_.transition_map = compact(net().transitions, root);
-        each_transition_mention(net(), [&](std::uint32_t& t) { t = out_.transition_map[t]; });
-        net().rendezvous.clear();
-    }
-
-    void merge(TransitionDraft& keep, TransitionDraft&& other) {
-        const auto once = [&](bool mine, bool theirs, const char* what) {
-            if (mine && theirs) {
-                report(defects_, "rendezvous-disagree", other.where, "transition " + other.path,
-                       "meets " + keep.path + ", and both state " + what,
-                       std::string("state ") + what + " in one of them");
-            }
-        };
-        once(keep.odds.has_value(), other.odds.has_value(), "odds");
-        once(keep.delay.has_value(), other.delay.has_value(), "a delay");
-        once(keep.holding.has_value(), other.holding.has_value(), "a holding time");
-        once(!keep.events.empty(), !other.events.empty(), "an event");
-        const auto shift = static_cast<std::uint32_t>(keep.variables.size());
-        each_expr(other, [&](Expr& e) {
-            e.rename_slots([&](Slot s) {
-                if (s.kind == static_cast<std::uint32_t>(SlotKind::kVariable)) {
-                    s.index += shift;
-                }
-                return s;
-            });
-        });
-        for (ArcDraft& arc : other.inputs) {
-            for (PatternDraft& pattern : arc.pattern) {
-                if (pattern.binds) {
-                    *pattern.binds += shift;
-                }
-            }
-            if (arc.time_left) {
-                *arc.time_left += shift;
-            }
-        }
-        const auto append = [](auto& to, auto& from) {
-            to.insert(to.end(), std::make_move_iterator(from.begin()),
-                      std::make_move_iterator(from.end()));
-        };
-        append(keep.variables, other.variables);
-        append(keep.inputs, other.inputs);
-        append(keep.outputs, other.outputs);
-        append(keep.assignments, other.assignments);
-        append(keep.raises, other.raises);
-        append(keep.events, other.events);
-        keep.next_event = keep.next_event || other.next_event;
-        if (other.guard) {
-            if (keep.guard) {
-                Result<Expr, ExprError> both =
-                    Expr::binary(ExprOp::kAnd, std::move(*keep.guard), std::move(*other.guard));
-                if (both) {
-                    keep.guard = std::move(both).value();
-                } else {
-                    report(defects_, "type-mismatch", other.where, "transition " + other.path,
-                           both.error().message, "make the guard a bool");
-                }
-            } else {
-                keep.guard = std::move(other.guard);
-            }
-        }
-        keep.priority = std::max(keep.priority, other.priority);
-        if (other.odds) {
-            keep.odds = std::move(other.odds);
-        }
-        if (other.delay) {
-            keep.delay = std::move(other.delay);
-        }
-        if (other.holding) {
-            keep.holding = std::move(other.holding);
-        }
-        keep.path += "|" + other.path;
     }
 
     // t for d  =>  t.begin -> t.busy (d) -> t.end. Tests, guard, delay, event at the begin;
@@ -322,6 +211,8 @@ class Lowering {
             const PlaceIndex place =
                 declared ? begin.busy : PlaceIndex{static_cast<std::uint32_t>(net().places.size())};
             const TransitionIndex last = begin.end;
+            begin.busy = {};
+            begin.end = {};
             OutputDraft into;
             into.place = place;
             into.where = begin.where;

@@ -25,6 +25,12 @@ struct Lowered {
     std::vector<RefinementDraft> refinements;
 };
 
+// What the transitions before became; more or fewer than one only of ends of channels.
+struct Met {
+    std::vector<std::vector<std::uint32_t>> products;
+};
+Met meet_transitions(NetDraft& net, Diagnostics& defects);  // as meet() of net/net.h
+
 // Appends what is wrong to `defects`; the result is usable only if that added no error.
 Lowered lower_draft(const NetDraft& draft, Diagnostics& defects);
 

@@ -192,12 +192,6 @@ class Cut {
         for (net::AssignmentDraft& a : t.assignments) {
             a.datum.value = datum_[a.datum.value];
         }
-        if (t.busy.valid()) {
-            t.busy.value = place_[t.busy.value];
-        }
-        if (t.end.valid()) {
-            t.end.value = transition_[t.end.value];
-        }
     }
 
     // The formula speaks only of what is kept.

@@ -216,6 +216,28 @@ struct RefinementDraft {
     SourceSpan where;
 };
 
+// One end of a channel: a transition that sends on it, or receives from it.
+struct ChannelEnd {
+    TransitionIndex transition;
+    std::uint32_t owner = 0;  // the machine: a send and a receive of one owner never meet
+    // Of a send: what is sent, over the state before the firing. Of a receive: what the message
+    // must be; left out, it takes any.
+    std::optional<Expr> message;
+    DatumIndex into;  // of a receive: gets the message
+    SourceSpan where;
+};
+
+// Every send and every receive of different owners whose messages agree are one transition, named
+// "a.send|b.receive", joined as in a rendezvous, and a transition takes part in as
+// many as there are partners. The ends themselves are no transitions of the net.
+struct ChannelDraft {
+    std::string path;
+    std::string caption;
+    SourceSpan where;
+    std::vector<ChannelEnd> sends, receives;
+    bool shared = false;  // several owners may send, or receive; else it is one-to-one
+};
+
 struct NetDraft {
     std::string name;
     // In a net without time, transitions without any input are allowed: one firing per beat. So
@@ -232,6 +254,7 @@ struct NetDraft {
         fusions;  // each list becomes its first place; the other names stay known
     std::vector<std::vector<TransitionIndex>>
         rendezvous;  // each list becomes one transition, named "a.t|b.t"
+    std::vector<ChannelDraft> channels;
     std::vector<HostAtom> host_atoms;
     std::vector<NamedState> states;
     std::vector<Rule> rules;

@@ -91,7 +91,8 @@ class Net {
     DatumIndex find_datum(std::string_view path) const;
     EventIndex find_event(std::string_view path) const;
 
-    // Where a place or transition of the draft went (of a lowered `for d`: t.begin).
+    // Where a place or transition of the draft went (of a lowered `for d`: t.begin; of a channel's
+    // end: the first of its products, invalid where it has none).
     PlaceIndex place_of_draft(PlaceIndex p) const;
     TransitionIndex transition_of_draft(TransitionIndex t) const;
 
@@ -117,16 +118,26 @@ class Net {
     std::unique_ptr<NetTables> tables_;
 };
 
-// Rewrites `for d`, refinements, fusions and rendezvous into plain places, transitions and arcs.
-// Fails  with all defects of these.
+// Makes plain transitions of what meets: of rendezvous and channels. Rules that speak of a firing
+// of a channel's end speak of any of its products afterwards. lower() and compile() begin with
+// this; whoever takes drafts apart does it before. Fails  (into `defects`) by code:
+// rendezvous-disagree two-channel-ends holding-on-channel
+//        two-senders two-receivers channel-within unmatched-channel-end type-mismatch rule-of-many;
+//        warns of rendezvous-never.
+// Cost   O(size + sends * receives of each channel).
+void meet(NetDraft& draft, Diagnostics& defects);
+
+// Rewrites `for d`, refinements, fusions, rendezvous and channels into plain places, transitions
+// and arcs. Fails  with all defects of these.
 Checked<NetDraft> lower(const NetDraft& draft);
 
 // Lowers, checks everything, lays out.
 // Fails  with all defects, by code: unknown-index duplicate-name net-too-large weight-not-positive
 //        odds-not-positive source-without-delay two-writers as-without-sibling fused-disagree
-//        rendezvous-disagree type-mismatch variable-unbound pattern-on-attribute sensor-assigned
-//        range-empty initial-out-of-range negative-duration empty-interval wrong-distribution
-//        auto-without-movement capacity-exceeded refined-not-open key-missing expression-too-deep
+//        rendezvous-disagree and others of meet() type-mismatch variable-unbound
+//        pattern-on-attribute sensor-assigned range-empty initial-out-of-range negative-duration
+//        empty-interval wrong-distribution auto-without-movement capacity-exceeded refined-not-open
+//        key-missing expression-too-deep
 // Gives  notes() with code rounded-to-tick.
 // Cost   O(size).
 Checked<Net> compile(const NetDraft& draft);

@@ -63,6 +63,17 @@ void each_expr(TransitionDraft& t, F&& f) {
 }
 
 template <class F>
+void each_expr(ChannelDraft& c, F&& f) {
+    for (std::vector<ChannelEnd>* ends : {&c.sends, &c.receives}) {
+        for (ChannelEnd& end : *ends) {
+            if (end.message) {
+                f(*end.message);
+            }
+        }
+    }
+}
+
+template <class F>
 void each_formula(NetDraft& net, F&& f) {
     for (NamedState& s : net.states) {
         f(s.condition);
@@ -87,6 +98,9 @@ void each_expr(NetDraft& net, F&& f) {
     }
     for (TransitionDraft& t : net.transitions) {
         each_expr(t, f);
+    }
+    for (ChannelDraft& c : net.channels) {
+        each_expr(c, f);
     }
     each_formula(net, [&](Formula& formula) { each_expr(formula, f); });
 }
@@ -116,6 +130,9 @@ void each_place_mention(NetDraft& net, F&& f) {
         }
         for (OutputDraft& out : t.outputs) {
             f(out.place.value);
+        }
+        if (t.busy.valid()) {
+            f(t.busy.value);
         }
     }
     for (EventDraft& e : net.events) {
@@ -148,9 +165,14 @@ void each_place_mention(NetDraft& net, F&& f) {
     });
 }
 
-// Every mention of a transition except the lists of rendezvous.
+// Every mention of a transition except the lists of rendezvous and the ends of channels.
 template <class F>
 void each_transition_mention(NetDraft& net, F&& f) {
+    for (TransitionDraft& t : net.transitions) {
+        if (t.end.valid()) {
+            f(t.end.value);
+        }
+    }
     for (Rule& r : net.rules) {
         for (TransitionIndex& t : r.transitions) {
             f(t.value);
