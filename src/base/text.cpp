@@ -108,4 +108,10 @@ std::string_view nearest_name(std::string_view unknown, std::span<const std::str
     return best;
 }
 
+std::string_view stem_of(std::string_view path) {
+    const std::size_t slash = path.find_last_of("/\\");
+    const std::string_view file = slash == std::string_view::npos ? path : path.substr(slash + 1);
+    return file.substr(0, file.find('.'));
+}
+
 }  // namespace puppetri

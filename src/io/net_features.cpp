@@ -60,7 +60,8 @@ class Collector {
         for (const net::EventDraft& e : draft_.events) {
             use(NetFeature::kEvents, "event " + e.path, e.where);
         }
-        if (!draft_.fusions.empty() || !draft_.rendezvous.empty() || !draft_.refinements.empty()) {
+        if (!draft_.fusions.empty() || !draft_.rendezvous.empty() || !draft_.channels.empty() ||
+            !draft_.refinements.empty()) {
             use(NetFeature::kComposition, "net " + draft_.name, {});
         }
         for (const net::Rule& r : draft_.rules) {

@@ -20,6 +20,7 @@ class Builder {
     Place place(std::uint32_t node);
     Transition transition(std::uint32_t node);
     State state(std::uint32_t node);
+    Channel channel(std::uint32_t node);
     Data data(std::uint32_t node);
     Enumeration enumeration(std::uint32_t node);  // without its values
     TokenType token_type(std::uint32_t node);

@@ -127,6 +127,7 @@ Net Builder::net(std::uint32_t node) {
     Net out;
     out.name = name(child(node, NodeKind::kName));
     out.caption = caption(node);
+    out.is_machine = first(node).kind == Kind::kMachine;
     out.parameters = parameters(node);
     out.span = span(node);
     return out;

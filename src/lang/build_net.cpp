@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Statements of nets: places, transitions, data, events, instances.
 #include "build.h"
+#include "puppetri/base/text.h"
 
 namespace puppetri::lang {
 
@@ -145,6 +146,12 @@ void Builder::place_clause(std::uint32_t node, Place& out) {
         case Kind::kIs:
             out.same_as = child_path(node);
             break;
+        case Kind::kStarts:
+            out.starts = true;
+            break;
+        case Kind::kFinal:
+            out.final = true;
+            break;
         case Kind::kOf:
             out.of_type = child_path(node);
             out.attributes = parameters(node);
@@ -270,6 +277,17 @@ void Builder::transition_clause(std::uint32_t node, Transition& out) {
         case Kind::kRaises:
             paths(out.raises);
             break;
+        case Kind::kSend:
+            out.send = child_path(node);
+            out.message = child_expr(node);
+            break;
+        case Kind::kReceive:
+            out.receive = child_path(node);
+            out.received = child_expr(node);
+            break;
+        case Kind::kPoll:
+            out.poll = child_expr(node);
+            break;
         default:
             paths(out.together_with);
     }
@@ -302,6 +320,16 @@ Transition Builder::transition(std::uint32_t node) {
         memory = which == Kind::kMemory ? c : memory;
         servers = which == Kind::kServers ? c : servers;
     }
+    if (!out.send.empty() && !out.receive.empty()) {
+        report_.error(out.receive.span, "conflicting-clauses", element,
+                      "a transition either sends or receives",
+                      "use two transitions, with a state between them");
+    }
+    if (out.poll && !out.events.empty()) {
+        report_.error(out.poll.span, "conflicting-clauses", element,
+                      "'poll' waits for an instant of its own, and 'on' for an event",
+                      "keep one of them");
+    }
     for (const std::uint32_t c : {memory, servers}) {
         if (c != 0 && !out.delay) {
             report_.error(span(c), "conflicting-clauses", element,
@@ -316,6 +344,12 @@ Transition Builder::transition(std::uint32_t node) {
 State Builder::state(std::uint32_t node) {
     return {name(child(node, NodeKind::kName)), caption(node), has_token(node, Kind::kPublic),
             child_expr(node), span(node)};
+}
+
+Channel Builder::channel(std::uint32_t node) {
+    const std::uint32_t type = child(node, NodeKind::kType);
+    return {name(child(node, NodeKind::kName)), caption(node), has_token(node, Kind::kPublic),
+            type != 0 ? child_expr(type) : Expr{}, span(node)};
 }
 
 Data Builder::data(std::uint32_t node) {
@@ -377,7 +411,13 @@ EventFile Builder::event_file(std::uint32_t node) {
 
 Use Builder::use(std::uint32_t node) {
     Use out;
-    out.net = child_path(node);
+    if (const std::uint32_t file = child(node, NodeKind::kString); file != 0) {
+        out.path = quoted(first(file));
+        out.net.span = span(file);
+        out.net.steps.push_back({std::string(stem_of(out.path)), {}, span(file)});
+    } else {
+        out.net = child_path(node);
+    }
     std::uint32_t depth = 0;
     if (const std::uint32_t given = child(node, NodeKind::kArguments); given != 0) {
         out.args = arguments(given, depth);

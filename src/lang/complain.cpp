@@ -33,6 +33,8 @@ constexpr std::array kForms = {
          "question NAME \"caption\" shortest time to A, or longest time to A, or cycle time of A"},
     Form{Kind::kFor, "for NAME in (a, b) { ... }, or for NAME in 1 .. 5 { ... }"},
     Form{Kind::kNet, "net NAME(PARAMETER: TYPE, ...) { ... }"},
+    Form{Kind::kMachine, "machine NAME(PARAMETER: TYPE, ...) { ... }"},
+    Form{Kind::kChannel, "channel NAME of TYPE"},
     Form{Kind::kCast, "cast { NAME: mannequin { height 1.75 m } }"},
     Form{Kind::kEnd, "end { A and B }"},
     Form{Kind::kLanguage, "language 1"},

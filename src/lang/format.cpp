@@ -220,6 +220,8 @@ class Formatter {
             case Kind::kOpenList:
             case Kind::kDot:
             case Kind::kCount:
+            case Kind::kTell:
+            case Kind::kHear:
                 return false;
             case Kind::kOpenBlock:
                 return true;
@@ -242,6 +244,8 @@ class Formatter {
             case Kind::kCloseParen:
             case Kind::kCloseList:
             case Kind::kDot:
+            case Kind::kTell:
+            case Kind::kHear:
                 return false;
             case Kind::kColon:
                 return question_.back() > 0;
@@ -288,7 +292,8 @@ class Formatter {
             return false;
         }
         const Kind before = pieces_[i - 2].kind;
-        return (before == Kind::kNet || before == Kind::kToken) && pieces_[i - 2].statement_start;
+        return (before == Kind::kNet || before == Kind::kMachine || before == Kind::kToken) &&
+               pieces_[i - 2].statement_start;
     }
     Kind first_of_statement(std::size_t i) const {
         while (i > 0 && !pieces_[i].statement_start) {
@@ -347,6 +352,13 @@ class Formatter {
             case Kind::kRule:
             case Kind::kQuestionWord:
                 return kind_at(first);
+            case Kind::kState:  // of a machine, which is a row like a place's; others are formulas
+                for (std::size_t i = first; i < end; ++i) {
+                    if (pieces_[i].kind == Kind::kEqual) {
+                        return Kind::kEndOfFile;
+                    }
+                }
+                return Kind::kState;
             default:
                 return Kind::kEndOfFile;
         }
@@ -404,6 +416,8 @@ class Formatter {
                     case Kind::kTakes:
                         return column < 3 ? at_least(3) : column;
                     case Kind::kTokens:
+                    case Kind::kStarts:
+                    case Kind::kFinal:
                         return column < 4 ? at_least(4) : column;
                     case Kind::kOf:
                     case Kind::kIs:
@@ -439,6 +453,9 @@ class Formatter {
             case Kind::kOdds:
             case Kind::kRaises:
             case Kind::kTogether:
+            case Kind::kSend:
+            case Kind::kReceive:
+            case Kind::kPoll:
                 return i + 1 < pieces_.size() && breaks_before(i + 1) == 0 &&
                        !pieces_[i + 1].comment && pieces_[i + 1].kind != Kind::kPlus &&
                        pieces_[i + 1].kind != Kind::kDot;
@@ -450,8 +467,8 @@ class Formatter {
     // Behind `place NAME`, `rule NAME` or `question NAME`, the name with its indices included.
     bool after_head(std::size_t begin, std::size_t i) const {
         std::size_t at = begin;
-        while (at < i && pieces_[at].kind != Kind::kPlace && pieces_[at].kind != Kind::kRule &&
-               pieces_[at].kind != Kind::kQuestionWord) {
+        while (at < i && pieces_[at].kind != Kind::kPlace && pieces_[at].kind != Kind::kState &&
+               pieces_[at].kind != Kind::kRule && pieces_[at].kind != Kind::kQuestionWord) {
             ++at;
         }
         ++at;  // the name
@@ -493,7 +510,7 @@ class Formatter {
 
     // Clauses stand two columns apart in a table, everything else one.
     static std::size_t gap_before(Kind table, int column) {
-        const bool clause = (table == Kind::kPlace && column >= 2) ||
+        const bool clause = ((table == Kind::kPlace || table == Kind::kState) && column >= 2) ||
                             (table == Kind::kArrow && column >= 3) ||
                             ((table == Kind::kRule || table == Kind::kQuestionWord) && column >= 2);
         return clause ? 2 : 1;

@@ -294,7 +294,10 @@ struct transition_clause : sor<
     clause<tok<K::kSet>, list<assignment, K::kComma>>,
     clause<tok<K::kOdds>, expr>,
     clause<tok<K::kRaises>, list<path, K::kComma>>,
-    clause<tok<K::kTogether>, tok<K::kWith>, list<path, K::kComma>>> {};
+    clause<tok<K::kTogether>, tok<K::kWith>, list<path, K::kComma>>,
+    clause<tok<K::kSend>, path, opt<tok<K::kTell>, expr>>,
+    clause<tok<K::kReceive>, path, opt<tok<K::kHear>, expr>>,
+    clause<tok<K::kPoll>, tok<K::kEvery>, expr>> {};
 
 // ---- rules
 
@@ -346,6 +349,10 @@ struct transition : node<N::kTransition, is_public, name, opt<caption>, tok<K::k
                          sor<seq<outputs, star<transition_clause>, finish>,
                              seq<no_outputs, star<transition_clause>, finish>>> {};
 struct state : statement<N::kState, is_public, tok<K::kState>, name, opt<caption>, tok<K::kEqual>, expr> {};
+struct machine_state : statement<N::kMachineState, is_public, tok<K::kState>, name, opt<caption>,
+                                 star<sor<place_clause, clause<tok<K::kStarts>>, clause<tok<K::kFinal>>>>> {};
+struct channel : statement<N::kChannel, is_public, tok<K::kChannel>, name, opt<caption>,
+                           opt<tok<K::kOf>, node<N::kType, sum>>> {};
 struct data : statement<N::kData, is_public, tok<K::kData>, name, opt<caption>, tok<K::kColon>, node<N::kType, sum>,
                         opt<tok<K::kEqual>, node<N::kDefault, expr>>> {};
 struct token_type : statement<N::kToken, tok<K::kToken>, name, parameters> {};
@@ -354,13 +361,13 @@ struct event : statement<N::kEvent, is_public, opt<tok<K::kConsumed>>, tok<K::kE
                                  seq<clause<tok<K::kEvery>, expr>, opt<clause<tok<K::kFrom>, expr>>,
                                      opt<clause<tok<K::kUntil>, expr>>>>>> {};
 struct events : statement<N::kEvents, tok<K::kEvents>, tok<K::kFrom>, text> {};
-struct use : statement<N::kUse, tok<K::kUse>, path, opt<arguments>, opt<tok<K::kAs>, name>> {};
+struct use : statement<N::kUse, tok<K::kUse>, sor<text, seq<path, opt<arguments>>>, opt<tok<K::kAs>, name>> {};
 struct rule : node<N::kRule, tok<K::kRule>, name, opt<caption>, rule_form> {};
 struct question : statement<N::kQuestion, tok<K::kQuestionWord>, name, opt<caption>, question_form> {};
 
 // What opens a block ends before its brace.
 struct loop : statement<N::kFor, tok<K::kFor>, name, tok<K::kIn>, expr> {};
-struct net : statement<N::kNet, tok<K::kNet>, name, opt<parameters>, opt<caption>> {};
+struct net : statement<N::kNet, sor<tok<K::kNet>, tok<K::kMachine>>, name, opt<parameters>, opt<caption>> {};
 struct cast : statement<N::kCast, tok<K::kCast>> {};
 struct ends : statement<N::kEnds, tok<K::kEnd>> {};
 struct enumeration : statement<N::kEnum, tok<K::kEnum>, name> {};
@@ -394,7 +401,7 @@ struct import : statement<N::kImport, tok<K::kImport>, list<name, K::kComma>, to
 // A transition is known by its colon; all others by their keywords, and a block by what is left: the driver has seen that
 // a brace follows.
 struct transition_ahead : ahead<is_public, name, opt<caption>, tok<K::kColon>> {};
-struct any_statement : sor<seq<transition_ahead, transition>, place, state, data, token_type, event, events, use, rule,
+struct any_statement : sor<seq<transition_ahead, transition>, place, state, machine_state, channel, data, token_type, event, events, use, rule,
                            question, loop, net, cast, ends, enumeration, header, import, block> {};
 
 struct value_expr : expression<value_expr, seq<no_sign, any_op>> {};

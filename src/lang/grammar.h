@@ -44,6 +44,8 @@ enum class NodeKind : std::uint8_t {
     kPlace,
     kTransition,
     kState,
+    kMachineState,
+    kChannel,
     kData,
     kEnum,
     kToken,

@@ -30,6 +30,28 @@ struct Lexer {
         out.list.push_back({offset(begin), offset(end), kind, space, false});
         space = false;
     }
+    // Whether a channel's name and, before it, this word are what comes last: `send a.c`.
+    bool names_channel(Kind word) const {
+        std::size_t i = out.list.size();
+        const auto kind = [&](std::size_t back) {
+            return back <= i ? out.list[i - back].kind : Kind::kEndOfFile;
+        };
+        while (true) {
+            if (kind(1) == Kind::kCloseList) {  // c[k]
+                while (i > 0 && kind(1) != Kind::kOpenList && kind(1) != Kind::kNewline) {
+                    --i;
+                }
+                i -= i > 0 ? 1 : 0;
+            }
+            if (!is_word(kind(1)) && kind(1) != Kind::kQuotedName) {
+                return false;
+            }
+            if (kind(2) != Kind::kDot) {
+                return kind(2) == word;
+            }
+            i -= 2;
+        }
+    }
     // Whether an operand may follow: only then is `#name` a count, and otherwise a comment.
     bool wants_operand() const {
         if (out.list.empty()) {
@@ -118,6 +140,15 @@ struct count_here {
 struct count : peg::seq<peg::one<'#'>, peg::at<peg::sor<letter, peg::one<'\''>>>, count_here> {};
 struct comment : peg::seq<peg::one<'#'>, rest_of_line> {};
 
+// `!` behind the channel of a `send`.
+struct sends_here {
+    using rule_t = sends_here;
+    using subs_t = peg::empty_list;
+    template <peg::apply_mode, peg::rewind_mode, template <class...> class, template <class...> class, class In>
+    static bool match(In&, Lexer& lexer) { return lexer.names_channel(Kind::kSend); }
+};
+struct tell : peg::seq<peg::one<'!'>, sends_here> {};
+
 struct arrow : peg::string<'-', '>'> {};
 struct assign : peg::string<':', '='> {};
 struct dots : peg::string<'.', '.'> {};
@@ -128,7 +159,7 @@ struct greater_equal : peg::string<'>', '='> {};
 struct symbol : peg::one<'(', ')', '[', ']', '{', '}', ',', ';', ':', '<', '>', '+', '-', '*', '/', '^', '?', '.'> {};
 struct stray : peg::sor<peg::string<'&', '&'>, peg::string<'|', '|'>, peg::utf8::any> {};
 struct token : peg::sor<blank, word, line_end, number, text, quoted_name, count, comment, arrow, assign, dots, equal,
-                        not_equal, less_equal, greater_equal, symbol, open_text, join, stray> {};
+                        not_equal, tell, less_equal, greater_equal, symbol, open_text, join, stray> {};
 struct tokens : peg::until<peg::eof, token> {};
 // clang-format on
 
@@ -169,9 +200,12 @@ template <>
 struct action<symbol> {
     template <class In>
     static void apply(const In& in, Lexer& lexer) {
-        lexer.add(static_cast<Kind>(*in.begin()), in.begin(), in.end());
+        const bool hears = *in.begin() == '?' && lexer.names_channel(Kind::kReceive);
+        lexer.add(hears ? Kind::kHear : static_cast<Kind>(*in.begin()), in.begin(), in.end());
     }
 };
+template <>
+struct action<tell> : add<Kind::kTell> {};
 template <>
 struct action<word> {
     template <class In>
@@ -327,6 +361,8 @@ bool forgets_bracket(const Token& first, const Token& second) {
         case Kind::kRule:
         case Kind::kQuestionWord:
         case Kind::kNet:
+        case Kind::kMachine:
+        case Kind::kChannel:
         case Kind::kUse:
         case Kind::kEvent:
         case Kind::kState:
@@ -417,6 +453,8 @@ bool begins_statement(Kind kind) {
         case Kind::kStart:
         case Kind::kFinish:
         case Kind::kConsumed:
+        case Kind::kChannel:
+        case Kind::kMachine:
             return true;
         default:
             return false;
@@ -488,6 +526,10 @@ std::string_view describe(Kind kind) {
         case Kind::kCaret:
             return "'^'";
         case Kind::kQuestion:
+            return "'?'";
+        case Kind::kTell:
+            return "'!'";
+        case Kind::kHear:
             return "'?'";
         case Kind::kDot:
             return "'.'";

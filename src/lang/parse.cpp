@@ -14,7 +14,7 @@
 namespace puppetri::lang {
 namespace {
 
-enum class Level : std::uint8_t { kFile, kNet, kLoop };
+enum class Level : std::uint8_t { kFile, kNet, kMachine, kLoop };
 
 class Parser {
  public:
@@ -183,6 +183,7 @@ class Parser {
     bool brace_forgotten(std::uint32_t begin) const {
         switch (kind(begin)) {
             case Kind::kNet:
+            case Kind::kMachine:
             case Kind::kCast:
             case Kind::kScene:
             case Kind::kImport:
@@ -215,6 +216,7 @@ class Parser {
     NodeKind guess(std::uint32_t begin) const {
         switch (kind(begin)) {
             case Kind::kNet:
+            case Kind::kMachine:
                 return NodeKind::kNet;
             case Kind::kFor:
                 return NodeKind::kFor;
@@ -269,9 +271,10 @@ class Parser {
     // A word that can begin a clause of a place or of a transition, or a slip of one.
     bool begins_clause(const Token& token, bool also_misspelt) const {
         static const std::vector<std::string> words = {
-            "does",   "runs",     "takes", "tokens", "holds", "keeps",  "discipline", "of",
-            "is",     "priority", "when",  "with",   "while", "unless", "on",         "after",
-            "memory", "servers",  "for",   "set",    "odds",  "raises", "together"};
+            "does",   "runs",     "takes",    "tokens",  "holds", "keeps", "discipline",
+            "of",     "is",       "priority", "when",    "with",  "while", "unless",
+            "on",     "after",    "memory",   "servers", "for",   "set",   "odds",
+            "raises", "together", "send",     "receive", "poll"};
         if (!is_word(token.kind)) {
             return false;
         }
@@ -292,7 +295,8 @@ class Parser {
         std::uint32_t stuck = reading_.furthest - begin;
         const bool labelled =
             rest.size() > 2 && (rest[1].kind == Kind::kColon || rest[2].kind == Kind::kColon);
-        if (rest[0].kind != Kind::kPlace && rest[0].kind != Kind::kPublic && !labelled) {
+        if (rest[0].kind != Kind::kPlace && rest[0].kind != Kind::kState &&
+            rest[0].kind != Kind::kPublic && !labelled) {
             return;
         }
         while (!report_.full() && stuck > 1 && stuck + 1 < rest.size() &&
@@ -334,7 +338,7 @@ class Parser {
         const std::string name = named ? std::string(text(begin + 1)) : "";
         switch (which) {
             case NodeKind::kNet:
-                inner_body(dropped, Level::kNet, end, "net " + name);
+                inner_body(dropped, level_of(begin), end, "net " + name);
                 break;
             case NodeKind::kFor:
                 inner_body(dropped, inner(level), end, "for " + name);
@@ -346,15 +350,21 @@ class Parser {
                 skip_block();
         }
     }
-    static Level inner(Level level) { return level == Level::kNet ? Level::kNet : Level::kLoop; }
+    static Level inner(Level level) { return level == Level::kFile ? Level::kLoop : level; }
+    Level level_of(std::uint32_t begin) const {
+        static const std::vector<std::string> known = {"machine"};
+        const bool machine =
+            kind(begin) == Kind::kMachine || !nearest_name(text(begin), known).empty();
+        return machine ? Level::kMachine : Level::kNet;
+    }
 
     bool misspelt_net(std::uint32_t begin) const {
-        static const std::vector<std::string> known = {"net"};
+        static const std::vector<std::string> known = {"net", "machine"};
         return kind(begin) == Kind::kWord && !nearest_name(text(begin), known).empty();
     }
     // A head like a block's whose kind was meant to be a statement's.
     bool misspelt_block(std::uint32_t begin) const {
-        static const std::vector<std::string> known = {"net", "cast", "enum"};
+        static const std::vector<std::string> known = {"net", "machine", "cast", "enum"};
         return kind(begin) == Kind::kWord && !nearest_name(text(begin), known).empty();
     }
     std::string_view text(std::uint32_t i) const {
@@ -363,6 +373,16 @@ class Parser {
     }
 
     bool belongs(NodeKind which, Level level, std::uint32_t begin, const std::string& element) {
+        if (which == NodeKind::kMachineState && level != Level::kMachine) {
+            error(begin, "syntax", element, "'=' is missing: a state of a net is a formula",
+                  "write state NAME = A and B; states of their own are those of a machine");
+            return false;
+        }
+        if (which == NodeKind::kPlace && level == Level::kMachine) {
+            error(begin, "misplaced", element, "a machine has states, and no places",
+                  "write state NAME, or make this a net");
+            return false;
+        }
         if (level == Level::kFile) {
             return true;
         }
@@ -391,9 +411,20 @@ class Parser {
                 break;
             case NodeKind::kTransition:
                 out.transitions.push_back(b.transition(0));
+                if (out.transitions.back().poll && level != Level::kMachine) {
+                    report_.error(out.transitions.back().poll.span, "misplaced", element,
+                                  "'poll' is a word of machines",
+                                  "write event tick every 40 ms, and `on tick` here");
+                }
                 break;
             case NodeKind::kState:
                 out.states.push_back(b.state(0));
+                break;
+            case NodeKind::kMachineState:
+                out.places.push_back(b.place(0));
+                break;
+            case NodeKind::kChannel:
+                out.channels.push_back(b.channel(0));
                 break;
             case NodeKind::kData:
                 out.data.push_back(b.data(0));
@@ -407,9 +438,14 @@ class Parser {
             case NodeKind::kEvents:
                 out.event_files.push_back(b.event_file(0));
                 break;
-            case NodeKind::kUse:
-                out.uses.push_back(b.use(0));
+            case NodeKind::kUse: {
+                Use use = b.use(0);
+                if (!use.path.empty()) {
+                    use_file(use, end);
+                }
+                out.uses.push_back(std::move(use));
                 break;
+            }
             case NodeKind::kRule:
                 out.rules.push_back(b.rule(0));
                 break;
@@ -427,7 +463,8 @@ class Parser {
                 break;
             case NodeKind::kNet: {
                 Net net = b.net(0);
-                inner_body(net.body, Level::kNet, end, "net " + net.name.text);
+                inner_body(net.body, net.is_machine ? Level::kMachine : Level::kNet, end,
+                           (net.is_machine ? "machine " : "net ") + net.name.text);
                 extend(net.span);
                 out.nets.push_back(std::move(net));
                 break;
@@ -462,6 +499,37 @@ class Parser {
                 extend(block.span);
                 out.blocks.push_back(std::move(block));
             }
+        }
+    }
+
+    // use "legs.tookima" as legs { LEFT_LEG: ana.left_leg }: an import of the file's net, and its
+    // arguments one by line.
+    void use_file(Use& use, std::uint32_t end) {
+        const bool known =
+            std::any_of(file_.imports.begin(), file_.imports.end(), [&](const Import& import) {
+                return import.path == use.path && import.names.size() == 1 &&
+                       import.names[0].text == use.net.steps[0].text;
+            });
+        if (!known) {
+            file_.imports.push_back({{use.net.steps[0]}, use.path, use.net.span, use.net.span});
+        }
+        if (kind(end) != Kind::kOpenBlock) {
+            return;
+        }
+        std::vector<Property> given;
+        const std::string element = "use of " + use.path;
+        properties(given, end, element);
+        extend(use.span);
+        for (Property& p : given) {
+            if (p.name.steps.size() != 1 || p.values.size() != 2 ||
+                p.values[0].kind != ExprKind::kSymbol || p.values[0].text != ":" ||
+                p.has_children) {
+                report_.error(p.span, "syntax", element,
+                              "this is no binding of a name of the file to something of the scene",
+                              "write NAME: VALUE");
+                continue;
+            }
+            use.args.push_back({std::move(p.name.steps[0]), std::move(p.values[1])});
         }
     }
 

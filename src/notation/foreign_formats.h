@@ -7,6 +7,7 @@
 namespace puppetri::notation {
 
 void read_scxml(lang::Parsed& out, std::uint32_t file);
+void read_tookima(lang::Parsed& out, std::uint32_t file);
 void read_tuple_file(lang::Parsed& out, std::uint32_t file);
 
 }  // namespace puppetri::notation

@@ -14,7 +14,9 @@ namespace puppetri::notation {
 class Teller {
  public:
     Teller(const lang::Block& block, const lang::File& file, Lowered& out)
-        : element_(block.kind.text + " " + block.name.text), file_(file), out_(out) {}
+        : Teller(block.kind.text + " " + block.name.text, file, out) {}
+    Teller(std::string element, const lang::File& file, Lowered& out)
+        : element_(std::move(element)), file_(file), out_(out) {}
 
     void error(std::string code, lang::Span where, std::string message, std::string remedy) {
         tell(Severity::kError, std::move(code), where, std::move(message), std::move(remedy));

@@ -17,13 +17,6 @@
 namespace puppetri::notation {
 namespace {
 
-// "a/b/dinner.tuples" -> "dinner"
-std::string stem_of(const std::string& path) {
-    const std::size_t slash = path.find_last_of("/\\");
-    const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
-    return file.substr(0, file.find('.'));
-}
-
 class TupleNet {
  public:
     TupleNet(lang::Parsed& out, std::uint32_t file) : out_(out), file_(file) {}
@@ -37,7 +30,7 @@ class TupleNet {
         }
         lang::Net& net = out_.file.body.nets.emplace_back();
         net.span = {0, static_cast<std::uint32_t>(out_.file.text.size()), file_};
-        net.name = make_name(stem_of(path), {0, 0, file_});
+        net.name = make_name(std::string(stem_of(path)), {0, 0, file_});
         for (const KeyframeTuple& t : *tuples) {
             add_parameter(net, t.object, "actor", t.line);
             objects_[t.object].push_back(t);

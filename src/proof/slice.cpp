@@ -491,6 +491,16 @@ Components components(const net::NetDraft& draft) {
             sets.join(t0 + met.front().value, t0 + t.value);
         }
     }
+    for (const net::ChannelDraft& channel : draft.channels) {
+        if (channel.sends.empty()) {
+            continue;
+        }
+        for (const auto* ends : {&channel.sends, &channel.receives}) {
+            for (const net::ChannelEnd& end : *ends) {
+                sets.join(t0 + channel.sends.front().transition.value, t0 + end.transition.value);
+            }
+        }
+    }
     const bool many_priorities = std::any_of(
         draft.transitions.begin(), draft.transitions.end(),
         [&](const auto& t) { return t.priority != draft.transitions.front().priority; });

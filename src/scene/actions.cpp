@@ -60,6 +60,11 @@ std::optional<std::uint32_t> token_attribute(const Term& term) {
     return e->nodes()[0].slot.index;
 }
 
+bool has_side(const MovementSignature& signature) {
+    return std::any_of(signature.parameters.begin(), signature.parameters.end(),
+                       [](const motion::Parameter& p) { return p.name == "side"; });
+}
+
 bool takes_attribute(const motion::TypeSet& types, ValueKind kind) {
     return (kind == ValueKind::kActor && types.has(ParameterType::kActor)) ||
            (kind == ValueKind::kProp && types.has(ParameterType::kProp)) ||
@@ -106,14 +111,7 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
     }
     const SubjectKind kind = out.subject.kind;
     if (const MovementTerm* given = given_movement(call, scope)) {
-        if (kind != SubjectKind::kActor) {
-            error("wrong-subject", who.span, "only an actor does a movement that is a parameter",
-                  "name an actor");
-            return std::nullopt;
-        }
-        motion::BoundCall bound = given->call;
-        bound.subject = out.subject;
-        return bound;
+        return done_by(out.subject, given->call, who.span);
     }
     const MovementSignature* signature = motion::find_movement(name.text, kind);
     const OwnDefinition* own =
@@ -135,6 +133,13 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
             check_own_call(*own, out, call.span);
         }
         return out;
+    }
+    if (const MovementSignature* sided = motion::find_movement(name.text, SubjectKind::kActor);
+        signature == nullptr && kind == SubjectKind::kLimb && sided != nullptr &&
+        has_side(*sided)) {
+        bind_arguments(call, *sided, scope, out, true);
+        const motion::Subject limb = out.subject;
+        return done_by(limb, std::move(out), who.span);
     }
     if (signature == nullptr) {
         std::vector<std::string> known = own_movement_names(call.span.file);
@@ -169,6 +174,39 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
     }
     bind_arguments(call, *signature, scope, out);
     return out;
+}
+
+// A movement that waits for its subject. `ana.left_leg.step()` is `ana.step(left)`: what an actor
+// does with one of two limbs may be asked of the limb.
+std::optional<motion::BoundCall> Elaboration::done_by(const motion::Subject& subject,
+                                                      motion::BoundCall call, lang::Span where) {
+    call.subject = subject;
+    const bool limb = subject.kind == SubjectKind::kLimb;
+    const bool sided = has_side(motion::signature_of(call, SubjectKind::kActor));
+    const auto given = std::find_if(call.arguments.begin(), call.arguments.end(),
+                                    [](const auto& a) { return a.parameter == "side"; });
+    if (subject.kind == SubjectKind::kProp || (limb && !sided)) {
+        error("wrong-subject", where, "this movement is one of an actor", "name an actor");
+        return std::nullopt;
+    }
+    if (limb) {
+        const bool left =
+            subject.limb == motion::Limb::kLeftLeg || subject.limb == motion::Limb::kLeftArm;
+        const motion::Side side = left ? motion::Side::kLeft : motion::Side::kRight;
+        if (given == call.arguments.end()) {
+            call.arguments.push_back({"side", side});
+        } else if (!(given->value == motion::ArgumentValue{side})) {
+            error("wrong-subject", where, "this limb is on the other side",
+                  "leave `side` out, or name the other limb");
+            return std::nullopt;
+        }
+        call.subject = {.kind = SubjectKind::kActor, .actor = subject.actor};
+    } else if (sided && given == call.arguments.end()) {
+        error("missing-argument", where, call.movement + " needs its side",
+              "write it, or name the limb that does it: ana.left_leg");
+        return std::nullopt;
+    }
+    return call;
 }
 
 // `does me.greet()` in a net with the parameter `greet: movement`: what was given there.
@@ -223,12 +261,13 @@ void Elaboration::check_stand_in_call(const lang::Expr& call, const Scope& scope
 }
 
 void Elaboration::bind_arguments(const lang::Expr& call, const MovementSignature& signature,
-                                 const Scope& scope, motion::BoundCall& out) {
+                                 const Scope& scope, motion::BoundCall& out, bool side_later) {
     lang::Signature wanted{.name = std::string(signature.name), .parameters = {}};
     for (const motion::Parameter& p : signature.parameters) {
-        wanted.parameters.push_back({.name = std::string(p.name),
-                                     .required = p.default_text.empty() && !p.optional,
-                                     .wanted = wanted_types(p.types)});
+        wanted.parameters.push_back(
+            {.name = std::string(p.name),
+             .required = p.default_text.empty() && !p.optional && !(side_later && p.name == "side"),
+             .wanted = wanted_types(p.types)});
     }
     const lang::MatchedArguments matched = lang::match_arguments(wanted, call.args, call.span);
     for (const lang::CallDefect& d : matched.defects) {
@@ -341,7 +380,7 @@ Term Elaboration::movement_value(const lang::Expr& e, const lang::Path& path, co
         own != nullptr && own->movement != nullptr) {
         out.call.own = own->movement;
     }
-    bind_arguments(e, motion::signature_of(out.call, SubjectKind::kActor), scope, out.call);
+    bind_arguments(e, motion::signature_of(out.call, SubjectKind::kActor), scope, out.call, true);
     return out;
 }
 

@@ -76,6 +76,7 @@ enum class MemberKind : std::uint8_t {
     kState,
     kDatum,
     kEvent,
+    kChannel,
     kInstance,
     kEnumeration
 };
@@ -310,8 +311,11 @@ class Elaboration {
     net::DurationDraft sample_distribution(const lang::Expr& e, const Scope& scope,
                                            net::DurationDraft out);
     std::optional<motion::BoundCall> bind_call(const lang::Expr& call, const Scope& scope);
+    // `side_later`: a `side` that is not given is that of the limb that will do it.
     void bind_arguments(const lang::Expr& call, const motion::MovementSignature& signature,
-                        const Scope& scope, motion::BoundCall& out);
+                        const Scope& scope, motion::BoundCall& out, bool side_later = false);
+    std::optional<motion::BoundCall> done_by(const motion::Subject& subject, motion::BoundCall call,
+                                             lang::Span where);
     const MovementTerm* given_movement(const lang::Expr& call, const Scope& scope);
     void check_stand_in_call(const lang::Expr& call, const Scope& scope);
     std::optional<motion::ArgumentValue> bind_argument(const lang::Expr& value,
@@ -339,6 +343,16 @@ class Elaboration {
     void bind_patterns(const lang::Arc& arc, Locals& locals, const Scope& scope,
                        net::ArcDraft& out);
     void complete_rendezvous();
+    // channels.cpp, polls.cpp -- machines that speak to each other
+    void declare_channels();
+    void complete_channels();
+    void complete_send(std::uint32_t transition);
+    void complete_receive(std::uint32_t transition);
+    const ChannelTerm* channel_of(const lang::Path& path, const Scope& scope, Term& term);
+    std::uint32_t machine_of(std::uint32_t instance) const;
+    void find_polls();
+    // A name that stands for a value of this enumeration as well as for something of the net.
+    std::optional<Expr> enum_value(const lang::Expr& e, const Term& otherwise, ValueType type);
     void complete_events();
     void complete_equations();  // equations_block.cpp
     // Whether that is a variable of equations, which nets do not read; tells it then.
@@ -372,6 +386,8 @@ class Elaboration {
     std::deque<StateElement> states_;
     std::vector<Element<lang::Data>> data_;
     std::vector<Element<lang::Event>> events_;  // movement events have no node
+    std::vector<Element<lang::Channel>> channels_;
+    std::vector<std::optional<ValueType>> channel_types_;  // none: of signals, or wrong
     std::vector<Element<lang::Rule>> rules_;
     std::vector<Element<lang::Question>> questions_;
     std::vector<Element<lang::End>> ends_;  // one per formula list

@@ -265,8 +265,15 @@ Term Elaboration::fold(const lang::Expr& e, Op op, const Term& a, const Term& b)
     }
     // A plain zero or number beside a time of data is most likely a forgotten unit: the kernel says
     // so.
-    auto left = as_expr(a, e.args[0].value.span);
-    auto right = as_expr(b, e.args.back().value.span);
+    const auto beside = [&](const Term& other, const Term& own, const lang::Expr& written) {
+        const auto* datum = std::get_if<DatumTerm>(&other);
+        return datum == nullptr ? std::nullopt
+                                : enum_value(written, own, draft().data[datum->datum.value].type);
+    };
+    auto left = beside(b, a, e.args[0].value);
+    auto right = beside(a, b, e.args.back().value);
+    left = left ? left : as_expr(a, e.args[0].value.span);
+    right = right ? right : as_expr(b, e.args.back().value.span);
     if (!left || !right) {
         return Nothing{};
     }
@@ -497,7 +504,27 @@ std::optional<Expr> Elaboration::as_expr_of(const Term& term, ValueType type, la
 }
 
 std::optional<Expr> Elaboration::expr_of(const lang::Expr& e, const Scope& scope, ValueType type) {
-    return as_expr_of(evaluate(e, scope), type, e.span);
+    Term value = evaluate(e, scope);
+    if (auto named = enum_value(e, value, type)) {
+        return named;
+    }
+    return as_expr_of(value, type, e.span);
+}
+
+std::optional<Expr> Elaboration::enum_value(const lang::Expr& e, const Term& otherwise,
+                                            ValueType type) {
+    const bool thing =
+        is_formula_like(otherwise) || std::holds_alternative<InstanceTerm>(otherwise);
+    if (type.kind != ValueKind::kEnum || !thing || e.kind != ExprKind::kPath ||
+        e.path.steps.size() != 1) {
+        return std::nullopt;
+    }
+    const std::vector<std::string>& values = draft().enums[type.enumeration].values;
+    const auto found = std::find(values.begin(), values.end(), e.path.steps[0].text);
+    if (found == values.end()) {
+        return std::nullopt;
+    }
+    return Expr::enumerator(type.enumeration, found - values.begin());
 }
 
 }  // namespace puppetri::scene

@@ -59,7 +59,7 @@ bool Elaboration::add_member(const Scope& scope, const lang::Name& name, Member 
     std::string key = key_of(name, scope);
     if (instance.net != nullptr) {
         for (const lang::Parameter& p : instance.net->parameters) {
-            if (p.name.text == key) {
+            if (p.name.text == key && !p.hidden) {
                 error("name-twice", name.span, key + " is a parameter of this net already",
                       "choose another name");
                 return false;
@@ -201,6 +201,14 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
                                   .where = at(e.span),
                                   .consumed = e.is_consumed});
         events_.push_back({&e, scope, path});
+    }
+    for (const lang::Channel& c : body.channels) {
+        const std::string path = path_of(c.name, scope);
+        About about(*this, "channel " + path, c.span);
+        const auto index = static_cast<std::uint32_t>(draft().channels.size());
+        add_member(scope, c.name, {MemberKind::kChannel, index, c.is_public});
+        draft().channels.push_back({.path = path, .caption = c.caption.text, .where = at(c.span)});
+        channels_.push_back({&c, scope, path});
     }
     for (const lang::Place& p : body.places) {
         const std::string path = path_of(p.name, scope);

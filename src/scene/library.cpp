@@ -56,7 +56,12 @@ class Loader {
         std::map<std::string, Declaration> names;
         const lang::Body& body = library_.files.back().body;
         for (const lang::Net& net : body.nets) {
-            declare(names, net.name, {.file = number, .net = &net});
+            if (net.is_machine) {
+                keep(notation::lower_machine(net, library_.files[number]), nullptr, net.name,
+                     number, names);
+            } else {
+                declare(names, net.name, {.file = number, .net = &net});
+            }
         }
         for (const lang::Enumeration& e : body.enumerations) {
             declare(names, e.name, {.file = number, .enumeration = &e});
@@ -88,7 +93,13 @@ class Loader {
             library_.readable = false;
             return;
         }
-        notation::Lowered lowered = notation::lower(notation, block, library_.files[number]);
+        keep(notation::lower(notation, block, library_.files[number]), &block, block.name, number,
+             names);
+    }
+
+    // `block` is null for a machine.
+    void keep(notation::Lowered lowered, const lang::Block* block, const lang::Name& name,
+              std::uint32_t number, std::map<std::string, Declaration>& names) {
         if (has_errors(lowered.diagnostics)) {
             broken_[number] = true;
             library_.readable = false;
@@ -97,8 +108,8 @@ class Loader {
             library_.diagnostics.push_back(std::move(d));
         }
         library_.lowered.push_back(std::move(lowered.net));
-        library_.lowered_from.push_back(&block);
-        declare(names, block.name, {.file = number, .net = &library_.lowered.back()});
+        library_.lowered_from.push_back(block);
+        declare(names, name, {.file = number, .net = &library_.lowered.back()});
     }
 
     void declare(std::map<std::string, Declaration>& names, const lang::Name& name,

@@ -62,7 +62,9 @@ void Elaboration::complete() {
     complete_data();
     complete_attributes();
     complete_places();
+    declare_channels();
     complete_transitions();
+    complete_channels();
     complete_refinements();
     complete_states();
     complete_rules();
@@ -82,6 +84,10 @@ void Elaboration::complete() {
         if (place.action.valid()) {
             scene.play.actions[place.action.value].raises = place.raises;
         }
+    }
+    // Last, since the lists of the draft are parallel to those of the statements up to here.
+    if (!has_errors(diagnostics)) {
+        net::meet(draft(), diagnostics);
     }
 }
 
@@ -156,7 +162,9 @@ Loaded load_all(FileSource& files, const std::string& path,
     const lang::File& root = library.files[0];
     std::vector<const lang::Net*> nets;  // that the file declares
     for (const lang::Net& net : root.body.nets) {
-        nets.push_back(&net);
+        if (!net.is_machine) {  // lowered below
+            nets.push_back(&net);
+        }
     }
     for (const lang::Net& net : library.lowered) {
         if (net.span.file == 0) {

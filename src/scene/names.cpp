@@ -121,6 +121,8 @@ Term Elaboration::member_term(const Member& member) {
             return DatumTerm{{member.index}};
         case MemberKind::kEvent:
             return EventTerm{{member.index}};
+        case MemberKind::kChannel:
+            return ChannelTerm{member.index};
         case MemberKind::kInstance:
             return member.index == kNoInstance ? Term{Nothing{}} : Term{InstanceTerm{member.index}};
         case MemberKind::kEnumeration:
@@ -151,6 +153,9 @@ Term Elaboration::resolve_next(const Term& before, const lang::Name& name, const
         std::vector<std::string> known;
         for (std::size_t i = 0; i < instance.values.size(); ++i) {
             const std::string& parameter = instance.net->parameters[i].name.text;
+            if (instance.net->parameters[i].hidden) {
+                continue;
+            }
             if (parameter == name.text) {
                 return parameter_value(in, i);
             }

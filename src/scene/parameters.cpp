@@ -17,8 +17,9 @@ constexpr QuantityType kQuantities[] = {
     {"speed", lang::dimension::kSpeed},   {"mass", lang::dimension::kMass},
     {"number", lang::dimension::kNone},
 };
-const char* const kOthers[] = {"actor",    "prop",  "set",   "int",        "bool",  "side",
-                               "movement", "point", "place", "transition", "event", "data", "text"};
+const char* const kOthers[] = {"actor", "prop",     "set",     "int",   "bool",
+                               "side",  "movement", "point",   "place", "transition",
+                               "event", "data",     "channel", "text"};
 
 std::vector<std::string> type_names() {
     std::vector<std::string> names;
@@ -59,6 +60,9 @@ bool is_thing_of(std::string_view type, const Term& value) {
     }
     if (type == "data") {
         return std::holds_alternative<DatumTerm>(value);
+    }
+    if (type == "channel") {
+        return std::holds_alternative<ChannelTerm>(value);
     }
     if (type == "text") {
         return std::holds_alternative<Text>(value);

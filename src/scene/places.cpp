@@ -155,9 +155,12 @@ void Elaboration::complete_place(std::size_t i) {
 void Elaboration::complete_tokens(std::size_t i) {
     const PlaceElement& place = places_[i];
     net::PlaceDraft& out = draft().places[i];
-    if (place.node->role == lang::Role::kStart &&
-        instances_[place.scope.instance].refines.valid()) {
+    const bool run_by_place = instances_[place.scope.instance].refines.valid();
+    if (place.node->role == lang::Role::kStart && run_by_place) {
         return;  // a place that runs the net marks its start itself
+    }
+    if (place.node->starts && !run_by_place) {
+        out.tokens.push_back({.count = 1});
     }
     for (const lang::InitialTokens& group : place.node->tokens) {
         const auto count = group.count
@@ -211,9 +214,10 @@ void Elaboration::complete_refinements() {
             }
             net::RefinementDraft& out = draft().refinements[refinement_of[k]];
             out.inside.push_back(place);
-            if (k == own && places_[i].node->role == lang::Role::kStart) {
+            const lang::Place& node = *places_[i].node;
+            if (k == own && (node.role == lang::Role::kStart || node.starts)) {
                 out.start.push_back(place);
-            } else if (k == own && places_[i].node->role == lang::Role::kFinish) {
+            } else if (k == own && (node.role == lang::Role::kFinish || node.final)) {
                 out.finish.push_back(place);
             }
         }
@@ -221,14 +225,22 @@ void Elaboration::complete_refinements() {
     for (const net::RefinementDraft& out : draft().refinements) {
         const PlaceElement& place = places_[out.place.value];
         About about(*this, "place " + place.path, place.node->span);
-        const std::string net = "net " + instances_[place.runs].net->name.text;
+        const lang::Net& inner = *instances_[place.runs].net;
+        const std::string net = (inner.is_machine ? "machine " : "net ") + inner.name.text;
         if (out.start.empty()) {
             error("no-start", place.node->runs.span, net + " has no way in",
-                  "write `start place NAME` where it begins");
+                  inner.is_machine ? "write `starts` behind the state where it begins"
+                                   : "write `start place NAME` where it begins");
         }
         if (out.finish.empty()) {
             error("no-finish", place.node->runs.span, net + " has no way out",
-                  "write `finish place NAME` where it ends");
+                  inner.is_machine ? "write `final` behind the state where it ends"
+                                   : "write `finish place NAME` where it ends");
+        }
+        if (inner.is_machine && out.finish.size() > 1) {
+            error("many-finals", place.node->runs.span,
+                  net + " has more than one final state, and is in one at a time",
+                  "let one of them be final, and lead the others to it");
         }
     }
 }

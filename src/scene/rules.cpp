@@ -205,6 +205,32 @@ void Elaboration::complete_ends() {
             draft().finals.push_back({std::move(*any), at(end.node->span)});
         }
     }
+    // Machines with final states rest when all of them are in one.
+    std::map<std::uint32_t, Formula> resting;  // by instance
+    const lang::Place* first = nullptr;
+    for (std::uint32_t i = 0; i < places_.size(); ++i) {
+        const std::uint32_t own = places_[i].scope.instance;
+        bool inside = false;
+        for (std::uint32_t k = own; k != kNoInstance; k = instances_[k].up) {
+            inside = inside || instances_[k].refines.valid();
+        }
+        if (!places_[i].node->final || inside) {
+            continue;
+        }
+        first = first == nullptr ? places_[i].node : first;
+        const auto [at, made] = resting.emplace(own, Formula::marked({i}));
+        if (!made) {
+            at->second = Formula::binary(FormulaOp::kOr, at->second, Formula::marked({i}));
+        }
+    }
+    std::optional<Formula> all;
+    for (auto& [instance, rests] : resting) {
+        all = all ? Formula::binary(FormulaOp::kAnd, std::move(*all), std::move(rests))
+                  : std::move(rests);
+    }
+    if (all) {
+        draft().finals.push_back({std::move(*all), at(first->span)});
+    }
 }
 
 }  // namespace puppetri::scene

@@ -74,6 +74,7 @@ struct Describe {
     std::string operator()(const TransitionTerm&) const { return "a transition"; }
     std::string operator()(const EventTerm&) const { return "an event"; }
     std::string operator()(const DatumTerm&) const { return "data"; }
+    std::string operator()(const ChannelTerm&) const { return "a channel"; }
     std::string operator()(const EnumTerm&) const { return "a value of an enumeration"; }
     std::string operator()(const EnumerationTerm&) const { return "an enumeration"; }
     std::string operator()(const QuantityTerm& q) const {

@@ -81,6 +81,9 @@ struct EventTerm {
 struct DatumTerm {
     net::DatumIndex datum;
 };
+struct ChannelTerm {
+    std::uint32_t channel = 0;
+};
 struct EnumTerm {  // a value of an enumeration
     std::uint32_t enumeration = 0;
     std::int64_t ordinal = 0;
@@ -100,8 +103,8 @@ struct MovementTerm {  // a movement as value; the subject is left open
 
 using Term = std::variant<Nothing, Number, bool, Text, Word, PointTerm, ActorTerm, LimbTerm,
                           PropTerm, SetTerm, HolderOfTerm, HolderTerm, InstanceTerm, PlaceTerm,
-                          TransitionTerm, EventTerm, DatumTerm, EnumTerm, EnumerationTerm,
-                          MovementTerm, QuantityTerm, Expr, net::Formula>;
+                          TransitionTerm, EventTerm, DatumTerm, ChannelTerm, EnumTerm,
+                          EnumerationTerm, MovementTerm, QuantityTerm, Expr, net::Formula>;
 
 inline bool is_nothing(const Term& term) { return std::holds_alternative<Nothing>(term); }
 

@@ -72,18 +72,22 @@ class Dump {
             item("place", p.name, p.caption, p.is_public, static_cast<int>(p.role), p.does, p.runs,
                  static_cast<int>(p.takes.kind), p.takes.value, p.takes.as, p.tokens, p.capacity,
                  p.keeps_order, static_cast<int>(p.discipline), p.by_arrival, p.discipline_key,
-                 p.of_type, p.attributes, p.same_as);
+                 p.of_type, p.attributes, p.same_as, p.starts, p.final);
         }
         for (const Transition& t : b.transitions) {
             item("transition", t.name, t.caption, t.is_public, t.inputs, t.outputs, t.tests,
                  t.priority, t.guard, t.events, t.delay, static_cast<int>(t.memory), t.servers,
-                 t.holding, t.holding_left, t.assignments, t.odds, t.raises, t.together_with);
+                 t.holding, t.holding_left, t.assignments, t.odds, t.raises, t.together_with,
+                 t.send, t.message, t.receive, t.received, t.poll);
         }
         for (const State& s : b.states) {
             item("state", s.name, s.caption, s.is_public, s.formula);
         }
         for (const Data& d : b.data) {
             item("data", d.name, d.caption, d.is_public, d.type, d.initial);
+        }
+        for (const Channel& c : b.channels) {
+            item("channel", c.name, c.caption, c.is_public, c.type);
         }
         for (const Enumeration& e : b.enumerations) {
             item("enum", e.name, e.values);
@@ -99,7 +103,7 @@ class Dump {
             item("events", e.path);
         }
         for (const Use& u : b.uses) {
-            item("use", u.name, u.net, u.args);
+            item("use", u.name, u.net, u.path, u.args);
         }
         for (const Rule& r : b.rules) {
             item("rule", r.name, r.caption, static_cast<int>(r.kind), r.operands, r.bound,
@@ -122,7 +126,7 @@ class Dump {
             body(f.body);
         }
         for (const Net& n : b.nets) {
-            item("net", n.name, n.caption, n.parameters);
+            item("net", n.name, n.caption, n.is_machine, n.parameters);
             body(n.body);
         }
         out_ += '}';

@@ -51,4 +51,8 @@ std::string decimal_to_text(std::int64_t numerator, unsigned decimals);
 // space, "nan", "inf" and what overflows.
 std::optional<double> parse_number(std::string_view text);
 
+// The name of a file without its folders and from its first dot on: "a/b/dinner.tuples" ->
+// "dinner".
+std::string_view stem_of(std::string_view path);
+
 }  // namespace puppetri

@@ -94,6 +94,8 @@ struct Parameter {
     Name name;
     Expr type;           // kPath, or kRange for a bounded integer; kNone when not written
     Expr default_value;  // kNone when it must be given
+    // Of nets from files in other notations: seen from outside, a member of the same name hides it.
+    bool hidden = false;
     Span span;
 };
 

@@ -49,12 +49,16 @@ enum class Role : std::uint8_t {
     kFinish
 };  // the ways in and out of a net that a place `runs`
 
-// [public] [start | finish] place NAME "caption" clauses
+// [public] [start | finish] place NAME "caption" clauses, and in a machine: state NAME "caption"
+// clauses
 struct Place {
     Name name;
     Caption caption;
     bool is_public = false;
     Role role = Role::kInner;
+    // Of a state of a machine. `starts`: has the token, or is the way in where a place runs the
+    // machine. `final`: the machine may rest there, or it is the way out.
+    bool starts = false, final = false;
     Expr does;  // `does CALL`: a movement
     Expr runs;  // `runs NET(args)`: the net that refines this place
     Duration takes;
@@ -115,6 +119,11 @@ struct Transition {
     Expr odds;
     std::vector<Path> raises;
     std::vector<Path> together_with;  // a rendezvous with other transitions
+    // send c!m: the channel and the message; receive c?r: a variable that gets it, or what it must
+    // be. Without message: a signal, and whatever comes.
+    Path send, receive;
+    Expr message, received;
+    Expr poll;  // poll every d: is looked at then only
     Span span;
 };
 
@@ -134,6 +143,15 @@ struct Data {
     bool is_public = false;
     Expr type;     // kRange: bounded integer; kPath: bool, real, time, int, an enumeration
     Expr initial;  // kNone: the first value, zero, no
+    Span span;
+};
+
+// [public] channel NAME "caption" [of TYPE]
+struct Channel {
+    Name name;
+    Caption caption;
+    bool is_public = false;
+    Expr type;  // as of data; kNone: of signals
     Span span;
 };
 
@@ -168,10 +186,12 @@ struct EventFile {
     Span span;
 };
 
-// use NET(args) as NAME
+// use NET(args) as NAME, use "FILE" as NAME { PARAMETER: VALUE, ... }
 struct Use {
     Name name;  // `as NAME`, else the net's own name
     Path net;
+    std::string path;  // of a file in another notation, whose net has the file's name; it is
+                       // imported as well
     std::vector<Argument> args;
     Span span;
 };
@@ -269,6 +289,7 @@ struct Body {
     std::vector<Transition> transitions;
     std::vector<State> states;
     std::vector<Data> data;
+    std::vector<Channel> channels;
     std::vector<Enumeration> enumerations;
     std::vector<TokenType> token_types;
     std::vector<Event> events;
@@ -292,10 +313,11 @@ struct For {
     Span span;
 };
 
-// net NAME(parameters) { ... }
+// net NAME(parameters) { ... }, machine NAME(parameters) { ... }
 struct Net {
     Name name;
     Caption caption;
+    bool is_machine = false;  // its places are states (notation/machine.h)
     std::vector<Parameter> parameters;
     Body body;
     Span span;

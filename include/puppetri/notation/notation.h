@@ -33,6 +33,11 @@ std::span<const Notation> notations();
 // Null where no notation has this kind.
 const Notation* find_notation(std::string_view kind);
 
+// The net that a machine stands for (docs/notations/machine.md): its states are places and one
+// token is in one of them; a transition from a state to itself stays there, without beginning it
+// anew; `poll every d` waits for an event of the machine's own. Everything in it is public.
+Lowered lower_machine(const lang::Net& machine, const lang::File& file);
+
 // The net that `block`, of file `file` and of a kind that find_notation knows, stands for. Tells
 // all defects of the block at once.
 Lowered lower(const Notation& notation, const lang::Block& block, const lang::File& file);
