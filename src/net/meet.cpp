@@ -140,9 +140,11 @@ class Meeting {
                    "nobody sends on it and nobody receives from it",
                    "give it to two machines, or remove it", Severity::kWarning);
         }
+        std::vector<bool> said(channel.sends.size(), false);
         std::vector<bool> heard(channel.receives.size(), false);
-        for (const ChannelEnd& send : channel.sends) {
-            bool met = false;
+        bool any = false;
+        for (std::size_t s = 0; s < channel.sends.size(); ++s) {
+            const ChannelEnd& send = channel.sends[s];
             for (std::size_t r = 0; r < channel.receives.size(); ++r) {
                 const ChannelEnd& receive = channel.receives[r];
                 if (send.owner == receive.owner || differ(send.message, receive.message)) {
@@ -152,25 +154,30 @@ class Meeting {
                 if (!product) {
                     continue;
                 }
-                met = heard[r] = true;
+                any = said[s] = heard[r] = true;
                 made[send.transition.value].push_back(std::move(*product));
                 partners[send.transition.value].push_back(receive.transition.value);
             }
-            never(met, channel, channel.receives, send,
+        }
+        // Where the channel works otherwise, it is a word that this machine knows and the other one
+        // does not use.
+        const Severity severity = any ? Severity::kNote : Severity::kWarning;
+        for (std::size_t s = 0; s < said.size(); ++s) {
+            never(said[s], channel, channel.receives, channel.sends[s], severity,
                   "no receive takes the message of this send");
         }
-        for (std::size_t r = 0; r < channel.receives.size(); ++r) {
-            never(heard[r], channel, channel.sends, channel.receives[r],
+        for (std::size_t r = 0; r < heard.size(); ++r) {
+            never(heard[r], channel, channel.sends, channel.receives[r], severity,
                   "no send has the message of this receive");
         }
     }
 
     void never(bool met, const ChannelDraft& channel, const std::vector<ChannelEnd>& others,
-               const ChannelEnd& end, const char* message) {
+               const ChannelEnd& end, Severity severity, const char* message) {
         if (!met && !others.empty()) {
             report(defects_, "rendezvous-never", end.where, name(end),
                    std::string(message) + ", so that it never fires",
-                   "compare the messages on channel " + channel.path, Severity::kWarning);
+                   "compare the messages on channel " + channel.path, severity);
         }
     }
 

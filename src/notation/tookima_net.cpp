@@ -27,6 +27,7 @@ constexpr const char* kMessages = "Message";
 
 std::string heard(const std::string& channel) { return channel + " heard"; }
 std::string said(const std::string& channel) { return channel + " said"; }
+std::string moves(const std::string& function) { return function + " moves"; }
 std::string turn_of(const std::string& machine) { return "turn of " + machine; }
 std::string seen_by(const std::string& machine, const std::string& event) {
     return event + " seen by " + machine;
@@ -66,7 +67,8 @@ class ScriptNet {
         }
         for (const Word& f : functions_) {
             add_parameter(net, f, "movement");
-            net.parameters.back().default_value = make_reference("half_step", f.span);
+            net.parameters.back().default_value =
+                make_call(make_path("half_step", f.span), {}, f.span);
         }
         write_script(net.body);
         out_.file.body.nets.push_back(std::move(net));
@@ -397,7 +399,7 @@ class ScriptNet {
         if (file_ != 0 && !calls.empty()) {
             add_parameter(net, m.name, nullptr);
             for (const Word& f : calls) {
-                add_parameter(net, f, "movement");
+                add_parameter(net, {moves(f.text), f.span}, "movement");
             }
         }
         std::set<std::string> states = {m.initial.text};
@@ -451,8 +453,9 @@ class ScriptNet {
         place.capacity = make_number(Rational{1}, f.span);
         if (file_ != 0) {
             place.does = make_call(
-                make_path({make_name(m.name.text, f.span), make_name(f.text, f.span)}, f.span), {},
-                f.span);
+                make_path({make_name(m.name.text, f.span), make_name(moves(f.text), f.span)},
+                          f.span),
+                {}, f.span);
         } else {
             tell(out_, Severity::kNote, "unbound-function", f.span, "function " + f.text,
                  "moves nobody here, and is taken to last from one instant to the next",

@@ -48,6 +48,10 @@ void Elaboration::find_polls() {
         look(channel.sends, channel.receives);
         look(channel.receives, channel.sends);
     }
+    for (std::uint32_t i = 0; i < count; ++i) {  // of channels that are not known yet
+        const lang::Transition& node = *transitions_[i].node;
+        speaks[i] = speaks[i] || !node.send.empty() || !node.receive.empty();
+    }
     struct Step {
         std::uint32_t transition, to;
     };
