@@ -144,7 +144,7 @@ class EventGraph {
                               "write event arrive(who: int)");
                 continue;
             }
-            made.parameters.push_back({a.name, a.value, {}, a.name.span});
+            made.parameters.push_back({.name = a.name, .type = a.value, .span = a.name.span});
         }
         made.caption = line.caption();
         while (!line.done()) {

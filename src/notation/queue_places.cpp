@@ -17,7 +17,7 @@ void QueueBuilder::declare_customers() {
     lang::TokenType type;
     type.name = make_name(model_.customer, model_.customer_span);
     for (const CustomerAttribute& a : model_.attributes) {
-        type.attributes.push_back({a.name, a.type, {}, a.name.span});
+        type.attributes.push_back({.name = a.name, .type = a.type, .span = a.name.span});
     }
     type.span = model_.customer_span;
     body_.token_types.push_back(std::move(type));

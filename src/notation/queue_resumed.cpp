@@ -83,7 +83,7 @@ void QueueBuilder::build_resumed(std::size_t index) {
     busy.name = make_name(s.text() + "_service", span);
     waiting.span = busy.span = span;
     for (const CustomerAttribute& a : model_.attributes) {
-        waiting.attributes.push_back({a.name, a.type, {}, span});
+        waiting.attributes.push_back({.name = a.name, .type = a.type, .span = span});
     }
     busy.attributes = waiting.attributes;
     waiting.attributes.push_back(parameter(kRest, make_reference("time", span)));
