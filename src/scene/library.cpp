@@ -218,7 +218,8 @@ bool is_movement_kind(std::string_view kind) {
 
 const lang::Block* Library::equations_of(const lang::Net* net) const {
     for (std::size_t i = 0; i < lowered_from.size(); ++i) {
-        if (&lowered[i] == net && lowered_from[i]->kind.text == "equations") {
+        if (&lowered[i] == net && lowered_from[i] != nullptr &&
+            lowered_from[i]->kind.text == "equations") {
             return lowered_from[i];
         }
     }
