@@ -1,289 +1,118 @@
 // SPDX-License-Identifier: MIT
+// pugixml reads; what is here gives names their spaces and everything its place in the text.
 #include "xml.h"
 
 #include <algorithm>
+#include <pugixml.hpp>
 #include <utility>
 
 namespace puppetri::notation::xml {
 namespace {
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+using Spaces = std::vector<std::pair<std::string, std::string>>;  // prefixes, inner ones last
 
-bool is_name(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.' || c == ':' || static_cast<unsigned char>(c) >= 0x80;
-}
-
-void append_utf8(std::string& out, std::uint32_t c) {
-    if (c < 0x80) {
-        out += static_cast<char>(c);
-    } else if (c < 0x800) {
-        out += static_cast<char>(0xC0 | (c >> 6));
-        out += static_cast<char>(0x80 | (c & 63));
-    } else if (c < 0x10000) {
-        out += static_cast<char>(0xE0 | (c >> 12));
-        out += static_cast<char>(0x80 | ((c >> 6) & 63));
-        out += static_cast<char>(0x80 | (c & 63));
-    } else {
-        out += static_cast<char>(0xF0 | (c >> 18));
-        out += static_cast<char>(0x80 | ((c >> 12) & 63));
-        out += static_cast<char>(0x80 | ((c >> 6) & 63));
-        out += static_cast<char>(0x80 | (c & 63));
-    }
-}
-
-class Reader {
+class Copier {
  public:
-    Reader(std::string_view text, std::uint32_t file) : text_(text), file_(file) {}
-
-    Document read() {
-        skip_misc();
-        if (good() && (at_ >= text_.size() || text_[at_] != '<')) {
-            fail("bad-xml", at_, "an element is wanted here", "write <scxml ...>");
-        }
-        if (good()) {
-            element(out_.root, 0);
-        }
-        if (good()) {
-            skip_misc();
-        }
-        if (good() && at_ < text_.size()) {
-            fail("bad-xml", at_, "there is something behind the last element", "remove it");
-        }
-        return std::move(out_);
-    }
-
- private:
-    bool good() const { return out_.defects.empty(); }
+    Copier(std::string_view text, std::uint32_t file, Document& out)
+        : text_(text), file_(file), out_(out) {}
 
     void fail(std::string code, std::size_t at, std::string message, std::string remedy) {
-        if (good()) {
-            const auto begin = static_cast<std::uint32_t>(std::min(at, text_.size()));
-            const auto end = static_cast<std::uint32_t>(std::min(at + 1, text_.size()));
+        if (out_.defects.empty()) {
             out_.defects.push_back(
-                {std::move(code), std::move(message), std::move(remedy), {begin, end, file_}});
+                {std::move(code), std::move(message), std::move(remedy), span(at, at + 1)});
         }
     }
 
-    bool take(std::string_view what) {
-        if (text_.substr(at_, what.size()) != what) {
-            return false;
-        }
-        at_ += what.size();
-        return true;
-    }
-
-    void skip_space() {
-        while (at_ < text_.size() && is_space(text_[at_])) {
-            ++at_;
-        }
-    }
-
-    // Comments and processing instructions; true: there was one, or a defect.
-    bool skip_one() {
-        const std::size_t begin = at_;
-        const auto skip_to = [&](std::string_view end, const char* what) {
-            const std::size_t found = text_.find(end, at_);
-            if (found == text_.npos) {
-                fail("bad-xml", begin, std::string(what) + " has no end",
-                     "write " + std::string(end) + " behind it");
-                at_ = text_.size();
-            } else {
-                at_ = found + end.size();
-            }
-            return true;
-        };
-        if (take("<!--")) {
-            return skip_to("-->", "this comment");
-        }
-        if (take("<?")) {
-            return skip_to("?>", "this instruction");
-        }
-        if (take("<!DOCTYPE")) {
-            fail("xml-document-type", begin,
-                 "document types, and entities of their own, are not read",
-                 "remove the DOCTYPE, and write out what its entities stand for");
-            return true;
-        }
-        return false;
-    }
-
-    void skip_misc() {
-        do {
-            skip_space();
-        } while (good() && skip_one());
-    }
-
-    std::string_view name() {
-        const std::size_t begin = at_;
-        while (at_ < text_.size() && is_name(text_[at_])) {
-            ++at_;
-        }
-        if (at_ == begin) {
-            fail("bad-xml", at_, "a name is wanted here",
-                 "write the name of an element or attribute");
-        }
-        return text_.substr(begin, at_ - begin);
-    }
-
-    // &amp; and the like, at text_[at_] == '&'.
-    void entity(std::string& out) {
-        const std::size_t begin = at_;
-        const std::size_t end = text_.find(';', at_);
-        if (end == text_.npos || end - at_ > 12) {
-            return fail("bad-xml", begin, "this & begins no entity", "write &amp;");
-        }
-        const std::string_view body = text_.substr(at_ + 1, end - at_ - 1);
-        at_ = end + 1;
-        static constexpr std::pair<std::string_view, char> kKnown[] = {
-            {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
-        for (const auto& [known, c] : kKnown) {
-            if (known == body) {
-                out += c;
-                return;
-            }
-        }
-        if (body.size() > 1 && body[0] == '#') {
-            const bool hex = body[1] == 'x';
-            std::uint32_t value = 0;
-            bool digits = body.size() > (hex ? 2u : 1u);
-            for (const char c : body.substr(hex ? 2 : 1)) {
-                const int digit = c >= '0' && c <= '9'          ? c - '0'
-                                  : hex && c >= 'a' && c <= 'f' ? c - 'a' + 10
-                                  : hex && c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                                                : -1;
-                digits = digits && digit >= 0 && value < 0x200000;
-                value =
-                    value * (hex ? 16u : 10u) + static_cast<std::uint32_t>(digit < 0 ? 0 : digit);
-            }
-            if (digits && value > 0 && value <= 0x10FFFF && (value < 0xD800 || value > 0xDFFF)) {
-                return append_utf8(out, value);
-            }
-        }
-        fail("bad-xml", begin, "there is no entity &" + std::string(body) + ";",
-             "write out what it stands for");
-    }
-
-    void attribute(Element& e, std::vector<std::pair<std::string, std::string>>& spaces) {
-        Attribute a;
-        const std::size_t begin = at_;
-        a.name = name();
-        skip_space();
-        if (good() && !take("=")) {
-            fail("bad-xml", at_, "= is wanted here", "write NAME=\"VALUE\"");
-        }
-        skip_space();
-        const char quote = at_ < text_.size() ? text_[at_] : '\0';
-        if (good() && quote != '"' && quote != '\'') {
-            fail("bad-xml", at_, "a value in quotes is wanted here", "write NAME=\"VALUE\"");
-        }
-        const std::size_t value = ++at_;
-        while (good() && at_ < text_.size() && text_[at_] != quote) {
-            if (text_[at_] == '&') {
-                entity(a.value);
-            } else if (text_[at_] == '<') {
-                fail("bad-xml", at_, "this value has no end", "write a quote behind it");
-            } else {
-                a.value += text_[at_++];
-            }
-        }
-        if (good() && at_ >= text_.size()) {
-            fail("bad-xml", value, "this value has no end", "write a quote behind it");
-        }
-        a.span = {static_cast<std::uint32_t>(std::min(value, text_.size())),
-                  static_cast<std::uint32_t>(std::min(at_, text_.size())), file_};
-        ++at_;
-        if (good() && e.find(a.name) != nullptr) {
-            fail("bad-xml", begin, "the attribute " + a.name + " is given twice",
-                 "keep one of them");
-        }
-        if (a.name == "xmlns") {
-            spaces.emplace_back("", a.value);
-        } else if (a.name.rfind("xmlns:", 0) == 0) {
-            spaces.emplace_back(a.name.substr(6), a.value);
-        }
-        e.attributes.push_back(std::move(a));
-    }
-
-    void element(Element& e, int depth) {
-        const std::size_t begin = at_;
+    void copy(const pugi::xml_node& from, Element& to, int depth) {
+        // pugixml points behind the "<".
+        const auto begin = static_cast<std::size_t>(from.offset_debug()) - 1;
         if (depth >= kMaxDepth) {
             return fail("bad-xml", begin,
                         "elements are nested more than " + std::to_string(kMaxDepth) + " deep",
                         "nest less");
         }
-        ++at_;
-        const std::string full(name());
         const std::size_t kept = spaces_.size();
-        for (;;) {
-            const std::size_t before = at_;
-            skip_space();
-            if (!good() || at_ >= text_.size() || text_[at_] == '>' || text_[at_] == '/') {
-                break;
-            }
-            if (at_ == before) {
-                fail("bad-xml", at_, "a space is wanted here", "write a space before an attribute");
-                break;
-            }
-            attribute(e, spaces_);
+        std::size_t at = begin + 1 + std::string_view(from.name()).size();
+        for (const pugi::xml_attribute a : from.attributes()) {
+            attribute(a, begin, at, to);
         }
+        const std::string_view full = from.name();
         const std::size_t colon = full.find(':');
-        const std::string prefix = colon == full.npos ? "" : full.substr(0, colon);
-        e.name = colon == full.npos ? full : full.substr(colon + 1);
+        to.name = full.substr(colon == full.npos ? 0 : colon + 1);
+        const std::string_view prefix = full.substr(0, colon == full.npos ? 0 : colon);
         for (auto space = spaces_.rbegin(); space != spaces_.rend(); ++space) {
             if (space->first == prefix) {
-                e.space = space->second;
+                to.space = space->second;
                 break;
             }
         }
-        const bool empty = good() && take("/");
-        if (good() && !take(">")) {
-            fail("bad-xml", begin, "this tag has no end", "write >");
-        }
-        e.span = {static_cast<std::uint32_t>(begin),
-                  static_cast<std::uint32_t>(std::min(at_, text_.size())), file_};
-        while (good() && !empty) {
-            if (at_ >= text_.size()) {
-                fail("bad-xml", begin, "the element " + full + " has no end",
-                     "write </" + full + ">");
-            } else if (take("<![CDATA[")) {
-                const std::size_t end = text_.find("]]>", at_);
-                if (end == text_.npos) {
-                    fail("bad-xml", at_, "this text has no end", "write ]]> behind it");
-                } else {
-                    e.text += text_.substr(at_, end - at_);
-                    at_ = end + 3;
-                }
-            } else if (take("</")) {
-                const std::size_t tag = at_;
-                if (name() != full) {
-                    fail("bad-xml", tag, "this ends another element than " + full,
-                         "write </" + full + ">");
-                }
-                skip_space();
-                if (good() && !take(">")) {
-                    fail("bad-xml", at_, "> is wanted here", "write </" + full + ">");
-                }
-                break;
-            } else if (text_[at_] == '<') {
-                if (!skip_one()) {
-                    element(e.children.emplace_back(), depth + 1);
-                }
-            } else if (text_[at_] == '&') {
-                entity(e.text);
-            } else {
-                e.text += text_[at_++];
+        to.span = span(begin, std::min(text_.find('>', at), text_.size() - 1) + 1);
+        for (const pugi::xml_node c : from.children()) {
+            if (c.type() == pugi::node_element) {
+                copy(c, to.children.emplace_back(), depth + 1);
+            } else if (c.type() == pugi::node_pcdata || c.type() == pugi::node_cdata) {
+                to.text += c.value();
             }
         }
         spaces_.resize(kept);
     }
 
+ private:
+    lang::Span span(std::size_t begin, std::size_t end) const {
+        const auto inside = [&](std::size_t at) {
+            return static_cast<std::uint32_t>(std::min(at, text_.size()));
+        };
+        return {inside(begin), inside(end), file_};
+    }
+
+    // pugixml does not say where attributes are; they come in their order, from `at` on.
+    void attribute(const pugi::xml_attribute& from, std::size_t element, std::size_t& at,
+                   Element& to) {
+        Attribute a{from.name(), from.value(), {}};
+        const std::size_t equals = text_.find('=', text_.find(a.name, at));
+        const std::size_t open = text_.find_first_of("\"'", equals);
+        const std::size_t close = open == text_.npos ? open : text_.find(text_[open], open + 1);
+        if (close != text_.npos) {
+            a.span = span(open + 1, close);
+            at = close + 1;
+        }
+        if (to.find(a.name) != nullptr) {
+            fail("bad-xml", element, "the attribute " + a.name + " is given twice",
+                 "keep one of them");
+        }
+        if (a.name == "xmlns") {
+            spaces_.emplace_back("", a.value);
+        } else if (a.name.rfind("xmlns:", 0) == 0) {
+            spaces_.emplace_back(a.name.substr(6), a.value);
+        }
+        to.attributes.push_back(std::move(a));
+    }
+
     std::string_view text_;
     std::uint32_t file_;
-    std::size_t at_ = 0;
-    std::vector<std::pair<std::string, std::string>> spaces_;  // prefixes, inner ones last
-    Document out_;
+    Document& out_;
+    Spaces spaces_;
 };
+
+// Nested deeper than this, counted by tags alone, is refused before anything recurses.
+bool too_deep(const pugi::xml_node& root) {
+    int depth = 0;
+    for (pugi::xml_node n = root; n;) {
+        if (n.first_child()) {
+            n = n.first_child();
+            if (++depth > kMaxDepth) {
+                return true;
+            }
+            continue;
+        }
+        while (n && !n.next_sibling()) {
+            n = n.parent();
+            --depth;
+        }
+        n = n.next_sibling();
+    }
+    return false;
+}
 
 }  // namespace
 
@@ -296,6 +125,41 @@ const Attribute* Element::find(std::string_view attribute) const {
     return nullptr;
 }
 
-Document parse(std::string_view text, std::uint32_t file) { return Reader(text, file).read(); }
+Document parse(std::string_view text, std::uint32_t file) {
+    Document out;
+    Copier copier(text, file, out);
+    pugi::xml_document document;
+    const pugi::xml_parse_result result = document.load_buffer(
+        text.data(), text.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+    if (!result) {
+        copier.fail("bad-xml", static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)),
+                    std::string("this is no XML: ") + result.description(),
+                    "mend the file there; programs that write XML do not make this");
+        return out;
+    }
+    std::size_t elements = 0;
+    for (const pugi::xml_node n : document.children()) {
+        if (n.type() == pugi::node_doctype) {
+            copier.fail("xml-document-type", text.find("<!DOCTYPE"),
+                        "document types, and entities of their own, are not read",
+                        "remove the DOCTYPE, and write out what its entities stand for");
+        } else if (n.type() == pugi::node_element && ++elements > 1) {
+            copier.fail("bad-xml", static_cast<std::size_t>(n.offset_debug()),
+                        "there is something behind the last element", "remove it");
+        }
+    }
+    if (elements == 0) {
+        copier.fail("bad-xml", 0, "an element is wanted here", "write <scxml ...>");
+    }
+    if (out.defects.empty() && too_deep(document.document_element())) {
+        copier.fail("bad-xml", 0,
+                    "elements are nested more than " + std::to_string(kMaxDepth) + " deep",
+                    "nest less");
+    }
+    if (out.defects.empty()) {
+        copier.copy(document.document_element(), out.root, 0);
+    }
+    return out;
+}
 
 }  // namespace puppetri::notation::xml

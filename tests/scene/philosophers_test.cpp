@@ -95,7 +95,8 @@ TEST_CASE("whoever eats has two forks in his hands, and they lie as they lay aft
         CHECK(shown.holder(prop(right), row.start) == row.actor + ".right_hand");
     }
     CHECK(eaten >= 8);
-    // A fork never jumps: 4 m/s at most, and at rest it lies where it lay first, to two millimetres.
+    // A fork never jumps: 4 m/s at most, and at rest it lies where it lay first, to two
+    // millimetres.
     for (int k = 1; k <= 5; ++k) {
         const stage::PropIndex fork = prop("fork" + std::to_string(k));
         const Transform first = shown.world_from_prop(fork, at(0));

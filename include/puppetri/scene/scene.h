@@ -47,10 +47,10 @@ struct Scene {
     FrameRate frame_rate;
     Horizon horizon;
     std::uint64_t seed = 1;
-    SimTime beat{kTicksPerSecond};  // of a net without time
-    stage::Play play;               // the cast, and one action per place with `does`
-    net::NetDraft draft;            // as elaborated, rules and named states included
-    net::Net net;                   // compiled from it
+    SimTime beat{kTicksPerSecond};               // of a net without time
+    stage::Play play;                            // the cast, and one action per place with `does`
+    net::NetDraft draft;                         // as elaborated, rules and named states included
+    net::Net net;                                // compiled from it
     std::vector<run::EquationSystem> equations;  // beside the net; props and joints follow them
     std::vector<stage::Sensor> sensors;
     std::vector<Camera> cameras;
