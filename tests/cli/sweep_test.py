@@ -194,10 +194,27 @@ stay: back -> rest
         done = subprocess.run([PROGRAM, "solve", "fixed.pup"], cwd=self.path, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 3)
         self.assertIn("shop.chair", done.stderr)
-        done = subprocess.run([PROGRAM, "solve", "shop.pup", "--time", "1s"], cwd=self.path, capture_output=True,
+        done = subprocess.run([PROGRAM, "solve", "shop.pup", "--at", "1h", "--time", "1s"], cwd=self.path, capture_output=True,
                               text=True, timeout=60)
         self.assertEqual(done.returncode, 3)
         self.assertIn("infinitely", done.stderr)
+
+    def test_an_endless_queue_has_a_product_form_unless_it_grows(self):
+        done = subprocess.run([PROGRAM, "solve", "shop.pup", "--json"], cwd=self.path, capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        answer = json.loads(done.stdout)
+        self.assertEqual(answer["stations"], 1)
+        self.assertAlmostEqual(answer["values"]["shop.queue.stay"], 360, places=9)  # M/M/1 with rho = 1/2
+        self.assertAlmostEqual(answer["values"]["shop.chair.busy"], 0.5, places=12)
+        (self.path / "grows.pup").write_text(SHOP.replace("service: time = 6 min", "service: time = 13 min"))
+        done = subprocess.run([PROGRAM, "solve", "grows.pup"], cwd=self.path, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("grows without bound", done.stderr)
+        done = subprocess.run([PROGRAM, "sweep", "grows.pup", "--replications", "5"], cwd=self.path, capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("grows-without-bound", done.stderr)
 
     def test_the_page_stands_alone(self):
         self.sweep("--vary", "shop.barbers=1..3", "--replications", 20, "--html", "page.html")
