@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -249,7 +250,11 @@ std::uint64_t hold_floor(std::uint32_t n, std::uint64_t seed, std::uint64_t firi
     return hash.value();
 }
 
-std::uint64_t mm1_floor(std::uint64_t seed, std::uint64_t firings) {
+namespace {
+
+// Arrivals, services and the log; `come` and `go` keep what is to be known of the customers.
+template <class Come, class Go>
+std::uint64_t play_mm1(std::uint64_t seed, std::uint64_t firings, Come come, Go go) {
     const std::uint64_t arrive_key = stream_key(seed, "arrive", "delay");
     const std::uint64_t serve_key = stream_key(seed, "serve", "delay");
     const std::uint64_t arrive_path = hash_text("arrive");
@@ -266,6 +271,7 @@ std::uint64_t mm1_floor(std::uint64_t seed, std::uint64_t firings) {
         if (arrival < departure) {
             const std::int64_t now = arrival;
             hash.add(now, arrive_path);
+            come(now);
             arrival = now + exponential(arrive_key, arrivals, kArrivalMean_s);
             if (queue++ == 0) {
                 departure = now + exponential(serve_key, services, kServiceMean_s);
@@ -273,11 +279,53 @@ std::uint64_t mm1_floor(std::uint64_t seed, std::uint64_t firings) {
         } else {
             const std::int64_t now = departure;
             hash.add(now, serve_path);
+            go(now);
             departure =
                 --queue != 0 ? now + exponential(serve_key, services, kServiceMean_s) : kNever;
         }
     }
     return hash.value();
+}
+
+}  // namespace
+
+std::uint64_t mm1_floor(std::uint64_t seed, std::uint64_t firings) {
+    return play_mm1(
+        seed, firings, [](std::int64_t) {}, [](std::int64_t) {});
+}
+
+QueueSums mm1_customers_floor(std::uint64_t seed, std::uint64_t firings) {
+    struct Customer {
+        std::int64_t number, arrived;
+    };
+    std::deque<Customer> queue;
+    std::int64_t number = 0, last = 0, longest = 0;
+    double area = 0, stays = 0;
+    std::uint64_t left = 0;
+    const auto pass = [&](std::int64_t now) {
+        area += static_cast<double>(now - last) * static_cast<double>(queue.size());
+        last = now;
+    };
+    QueueSums out;
+    out.log_hash = play_mm1(
+        seed, firings,
+        [&](std::int64_t now) {
+            pass(now);
+            queue.push_back({number++, now});
+        },
+        [&](std::int64_t now) {
+            pass(now);
+            const std::int64_t stay = now - queue.front().arrived;
+            queue.pop_front();
+            stays += static_cast<double>(stay);
+            longest = std::max(longest, stay);
+            ++left;
+        });
+    constexpr auto kTicks = static_cast<double>(kTicksPerSecond);
+    out.mean_length = area / static_cast<double>(last);
+    out.mean_stay_s = stays / static_cast<double>(left) / kTicks;
+    out.longest_stay_s = static_cast<double>(longest) / kTicks;
+    return out;
 }
 
 }  // namespace puppetri::bench

@@ -104,4 +104,67 @@ NetDraft mm1() {
     return net;
 }
 
+NetDraft mm1_customers() {
+    NetDraft net = mm1();
+    net.name = "mm1_customers";
+    const ValueType number{ValueKind::kInt};
+    DatumDraft next;
+    next.path = "next";
+    next.type = number;
+    net.data.push_back(std::move(next));
+    const Expr read = Expr::slot(slot(SlotKind::kDatum, 0), number);
+    net.places[0].attributes.push_back({"number", number});
+    net.transitions[0].outputs[0].attributes.push_back(read);
+    net.transitions[0].assignments.push_back(
+        {DatumIndex{0}, Expr::binary(ExprOp::kAdd, read, Expr::integer(1)).value(), {}});
+    net.transitions[1].variables.push_back({"n", number});
+    PatternDraft pattern;
+    pattern.binds = 0;
+    net.transitions[1].inputs[0].pattern.push_back(std::move(pattern));
+    MeasureDraft length;
+    length.path = "length";
+    length.value = Expr::slot(slot(SlotKind::kCount, 0), number);
+    net.measures.push_back(std::move(length));
+    for (const Statistic s : {Statistic::kMean, Statistic::kMost}) {
+        MeasureDraft stay;
+        stay.path = name_of(s);
+        stay.statistic = s;
+        stay.seen = Seen::kStays;
+        stay.place = PlaceIndex{0};
+        net.measures.push_back(std::move(stay));
+    }
+    return net;
+}
+
+NetDraft barber_day() {
+    NetDraft net;
+    net.name = "barber_day";
+    const PlaceIndex door = add_place(net, "door", 0), waiting = add_place(net, "waiting", 0),
+                     seats = add_place(net, "seats", 4), barber = add_place(net, "barber", 1),
+                     chair = add_place(net, "chair", 0);
+    DurationDraft cut;
+    cut.kind = DurationKind::kInterval;
+    cut.a = Expr::time({300 * kTicksPerSecond});
+    cut.b = Expr::time({900 * kTicksPerSecond});
+    net.places[chair.value].duration = std::move(cut);
+    const auto add = [&](const char* path, std::initializer_list<PlaceIndex> from,
+                         std::initializer_list<PlaceIndex> to) -> TransitionDraft& {
+        TransitionDraft& t = net.transitions.emplace_back();
+        t.path = path;
+        for (const PlaceIndex p : from) {
+            take(t, p);
+        }
+        for (const PlaceIndex p : to) {
+            give(t, p);
+        }
+        return t;
+    };
+    add("come", {}, {door}).delay = DelayDraft{.duration = exponential(600)};
+    add("sit_down", {door, seats}, {waiting}).priority = 3;
+    add("go_away", {door}, {}).priority = 2;
+    add("begin", {waiting, barber}, {chair, seats});
+    add("pay", {chair}, {barber});
+    return net;
+}
+
 }  // namespace puppetri::bench

@@ -25,5 +25,11 @@ net::NetDraft philosophers(std::uint32_t n);
 net::NetDraft hold(std::uint32_t n);
 // One queue, one server, Poisson arrivals: two transitions with exponential delays.
 net::NetDraft mm1();
+// The same with customers that have a number each, and three measures: the mean number of them, the
+// mean and the longest time of their stay.
+net::NetDraft mm1_customers();
+// A barber shop's day: Poisson arrivals every 10 min, four chairs to wait on (who finds none goes
+// away), one barber, haircuts of 5 to 15 min.
+net::NetDraft barber_day();
 
 }  // namespace puppetri::bench

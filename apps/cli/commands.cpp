@@ -15,6 +15,8 @@ std::vector<Command> all_commands() {
         explain_command(),
         sweep_command(),
         solve_command(),
+        compare_command(),
+        replay_command(),
         explore_command(),
         query_command(),
         draw_command(),

@@ -23,6 +23,8 @@ Command explore_command();
 Command convert_command();
 Command clip_command();
 Command query_command();
+Command replay_command();
+Command compare_command();
 
 // In the order of the help.
 std::vector<Command> all_commands();

@@ -128,7 +128,8 @@ std::string hash_text_of(std::uint64_t hash) {
     return text;
 }
 
-std::string run_json(const scene::Scene& scene, const scene::Performed& p) {
+std::string run_json(const scene::Scene& scene, const scene::Performed& p,
+                     const std::string& measures) {
     std::string notes;
     for (const Diagnostic& d : p.notes) {
         notes += (notes.empty() ? "\n  " : ",\n  ") + to_json(d);
@@ -139,8 +140,8 @@ std::string run_json(const scene::Scene& scene, const scene::Performed& p) {
            ", \"frames\": " + std::to_string(frames(scene, p.end)) +
            ", \"firings\": " + std::to_string(p.firings) +
            ", \"movements\": " + std::to_string(p.performance->score().size()) +
-           ", \"log_hash\": \"" + hash_text_of(p.log_hash) +
-           "\", \"fault\": " + (p.fault ? to_json(*p.fault) : "null") + ", \"notes\": [" + notes +
+           ", \"log_hash\": \"" + hash_text_of(p.log_hash) + "\", \"measures\": " + measures +
+           ", \"fault\": " + (p.fault ? to_json(*p.fault) : "null") + ", \"notes\": [" + notes +
            (notes.empty() ? "]}" : "\n]}");
 }
 

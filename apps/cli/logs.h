@@ -35,8 +35,9 @@ std::string score_csv(const stage::Performance& performance);
 // "at the horizon", "at rest in a final marking", ...
 std::string describe(const scene::Performed& performed);
 
-// One JSON object about a run.
-std::string run_json(const scene::Scene& scene, const scene::Performed& performed);
+// One JSON object about a run; `measures` is one in it, "{}" for none.
+std::string run_json(const scene::Scene& scene, const scene::Performed& performed,
+                     const std::string& measures);
 
 // The lines that people read after a run.
 std::string run_summary(const scene::Scene& scene, const scene::Performed& performed);

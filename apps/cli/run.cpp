@@ -9,12 +9,14 @@
 #include "interrupt.h"
 #include "live_input.h"
 #include "logs.h"
+#include "measures.h"
 #include "performing.h"
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/notation/foreign_file.h"
 #include "puppetri/scene/events.h"
 #include "puppetri/scene/perform.h"
+#include "puppetri/sim/meter.h"
 #include "puppetri/verdict/explain.h"
 #include "run_net.h"
 #include "scene_files.h"
@@ -98,6 +100,13 @@ int run(const Arguments& arguments) {
         log.emplace(std::move(*opened));
         options->sink = &*log;
     }
+    const auto metrics = measures_asked(scene->net, arguments.texts("--measure"));
+    if (!metrics) {
+        say_error(metrics.error());
+        return kBadInput;
+    }
+    sim::Meter meter(scene->net, *metrics);
+    options->observer = metrics->empty() ? nullptr : &meter;
     std::optional<Checked<scene::Performed>> performed;
     {
         Progress progress("running");
@@ -117,6 +126,12 @@ int run(const Arguments& arguments) {
     }
     const scene::Performed& result = **performed;
     bool good = true;
+    std::vector<double> measured(metrics->size());
+    meter.finish(result.end, measured);
+    if (meter.fault()) {
+        say_diagnostics({*meter.fault()});
+        good = false;
+    }
     if (log) {
         if (auto written = log->commit(); !written) {
             say_diagnostics(written.error());
@@ -137,7 +152,7 @@ int run(const Arguments& arguments) {
         say_diagnostics({*result.fault});
     }
     if (arguments.given("--json")) {
-        std::puts(run_json(*scene, result).c_str());
+        std::puts(run_json(*scene, result, measures_json(scene->net, *metrics, measured)).c_str());
     } else if (arguments.given("--hash")) {
         std::puts(hash_text_of(result.log_hash).c_str());
     } else {
@@ -145,6 +160,8 @@ int run(const Arguments& arguments) {
             tell_story(arguments.text("--witness"), *scene);
         }
         say(run_summary(*scene, result));
+        const std::string table = measures_table(scene->net, *metrics, measured);
+        std::fwrite(table.data(), 1, table.size(), stdout);
     }
     return good && !result.fault && !result.interrupted ? kFine : kFailed;
 }
@@ -165,7 +182,10 @@ Command run_command() {
         "instance\n"
         "One tick is 1/705600000 s. Events are lines `2.5 s NAME`; on stdin (--events -) the run "
         "follows real\n"
-        "time and also takes `now NAME`.\n\n"
+        "time and also takes `now NAME`. Measures that the scene declares (`measure wait mean of "
+        "time "
+        "in queue`)\n"
+        "are told on stdout.\n\n"
         "Examples:\n"
         "  puppetri run ball.pup                           a chart of the score\n"
         "  puppetri run ball.pup --for 20s --seed 3        also 480f (frames), 500x (firings)\n"
@@ -187,6 +207,8 @@ Command run_command() {
           "write the outside events of this session, to be replayed", false},
          {"--witness", Value::kText, "FILE",
           "play the run of a witness that `puppetri prove` has written, step by step", false},
+         {"--measure", Value::kTexts, "MEASURE",
+          "what to measure, as `puppetri sweep` says; without: what the scene declares", false},
          {"--hash", Value::kFlag, "", "print the fingerprint of the log alone", false},
          {"--json", Value::kFlag, "", "the summary as JSON on stdout", false},
          file_option()},

@@ -7,6 +7,7 @@
 
 #include "horizon.h"
 #include "logs.h"
+#include "marking_text.h"
 #include "performing.h"
 #include "proving.h"
 #include "puppetri/run/player.h"
@@ -18,30 +19,10 @@ namespace {
 
 constexpr std::uint64_t kFirings = 100;  // unless told
 
-// "2 ready, waiting": what is marked, at most so many places.
-std::string marking_text(const net::Net& net, const run::Player& player) {
-    constexpr std::size_t kShown = 40;
-    std::string text;
-    std::size_t marked = 0;
-    for (std::uint32_t p = 0; p < net.place_count(); ++p) {
-        const std::uint32_t n = player.tokens(net::PlaceIndex{p});
-        if (n == 0 || ++marked > kShown) {
-            continue;
-        }
-        text += text.empty() ? "" : ", ";
-        text += n > 1 ? std::to_string(n) + " " : "";
-        text += net.place(net::PlaceIndex{p}).path;
-    }
-    if (marked > kShown) {
-        text += " and " + std::to_string(marked - kShown) + " more places";
-    }
-    return text.empty() ? "nothing" : text;
-}
-
 }  // namespace
 
 int run_net(const Arguments& arguments) {
-    for (const char* option : {"--events", "--record", "--score", "--json", "--log"}) {
+    for (const char* option : {"--events", "--record", "--score", "--json", "--log", "--measure"}) {
         if (arguments.given(option)) {
             say_error(std::string(option) +
                       " is for scenes; a net takes --witness, --seed, --for "
@@ -109,7 +90,11 @@ int run_net(const Arguments& arguments) {
         say_diagnostics({player.fault()});
         return kFailed;
     }
-    say("after " + std::to_string(played.steps.size()) + " firings: " + marking_text(net, player));
+    std::vector<std::uint32_t> tokens;
+    for (std::uint32_t p = 0; p < net.place_count(); ++p) {
+        tokens.push_back(player.tokens({p}));
+    }
+    say("after " + std::to_string(played.steps.size()) + " firings: " + marking_text(net, tokens));
     if (player.next_time() == SimTime::never()) {
         say(player.in_final_marking() ? "at rest in a final marking" : "nothing can fire any more");
     }

@@ -13,6 +13,7 @@
 #include "measures.h"
 #include "proving.h"
 #include "puppetri/io/json_writer.h"
+#include "puppetri/net/tables.h"
 #include "puppetri/proof/markov_net.h"
 #include "puppetri/scene/scene.h"
 #include "puppetri/sim/solved_queues.h"
@@ -34,12 +35,75 @@ struct Row {
 };
 
 // What makes sense of a distribution: no largest numbers, no counts.
-bool solvable(sim::MetricKind kind, bool long_run) {
+bool solvable(const net::Net& net, const sim::Metric& metric, bool long_run) {
     using enum sim::MetricKind;
-    return kind == kTokens || kind == kBusy || (long_run && (kind == kStay || kind == kRate));
+    if (metric.kind != kMeasure) {
+        return metric.kind == kTokens || metric.kind == kBusy ||
+               (long_run && (metric.kind == kStay || metric.kind == kRate));
+    }
+    const net::MeasureDraft& m = net.declarations().measures[metric.element];
+    switch (m.seen) {
+        case net::Seen::kState:
+            return m.statistic == net::Statistic::kMean || m.statistic == net::Statistic::kShare;
+        case net::Seen::kFirings:
+            return long_run && m.statistic == net::Statistic::kRate && !m.from.empty() &&
+                   !m.from[0].keyed;
+        case net::Seen::kStays:
+            return long_run && m.statistic == net::Statistic::kMean;
+        default:
+            return false;
+    }
 }
 
-double value_of(const MarkovNet& markov, const std::vector<double>& shares, const sim::Metric& m) {
+// Reads one state of the chain.
+class StateReader final : public Code::Reader {
+ public:
+    explicit StateReader(const proof::TimedGraph& graph) : graph_(graph) {}
+    std::uint32_t state = 0;  // of the graph
+    puppetri::Value read(std::uint32_t kind, std::uint32_t index) const override {
+        switch (static_cast<net::SlotKind>(kind)) {
+            case net::SlotKind::kDatum:
+                return graph_.datum(state, {index});
+            case net::SlotKind::kCount:
+                return graph_.tokens(state, {index}).total;
+            case net::SlotKind::kReady:
+                return graph_.tokens(state, {index}).ready;
+            default:
+                return 0;
+        }
+    }
+
+ private:
+    const proof::TimedGraph& graph_;
+};
+
+double mean_value(const net::Net& net, const MarkovNet& markov, const std::vector<double>& shares,
+                  std::uint32_t measure) {
+    const net::MeasureDraft& m = net.declarations().measures[measure];
+    const net::NetTables& tables = net.tables();
+    StateReader reader(markov.graph);
+    double mean = 0;
+    for (std::uint32_t i = 0; i < markov.chain.size(); ++i) {
+        reader.state = markov.state[i];
+        const Evaluated e = tables.measure_code.evaluate(tables.measures[measure].value, reader);
+        if (e.fault != EvalFault::kNone) {
+            return std::nan("");
+        }
+        const auto value = static_cast<double>(e.value);
+        mean += shares[i] * (m.value.type().kind == ValueKind::kReal   ? real_of_value(e.value)
+                             : m.value.type().kind == ValueKind::kTime ? value / kTicksPerSecond
+                                                                       : value);
+    }
+    return mean;
+}
+
+double stay_in(const MarkovNet& markov, const std::vector<double>& shares, net::PlaceIndex place) {
+    const double arrivals = markov.arrivals(shares, place);  // Little's law
+    return arrivals > 0 ? markov.mean_tokens(shares, place) / arrivals : std::nan("");
+}
+
+double value_of(const net::Net& net, const MarkovNet& markov, const std::vector<double>& shares,
+                const sim::Metric& m) {
     switch (m.kind) {
         case sim::MetricKind::kTokens:
             return markov.mean_tokens(shares, {m.element});
@@ -47,11 +111,23 @@ double value_of(const MarkovNet& markov, const std::vector<double>& shares, cons
             return markov.share_marked(shares, {m.element});
         case sim::MetricKind::kRate:
             return markov.rate(shares, {m.element});
-        default: {  // Little's law
-            const double arrivals = markov.arrivals(shares, {m.element});
-            return arrivals > 0 ? markov.mean_tokens(shares, {m.element}) / arrivals : 0;
-        }
+        case sim::MetricKind::kMeasure:
+            break;
+        default:
+            return stay_in(markov, shares, {m.element});
     }
+    const net::MeasureDraft& measure = net.declarations().measures[m.element];
+    if (measure.seen == net::Seen::kState) {
+        return mean_value(net, markov, shares, m.element);
+    }
+    if (measure.seen == net::Seen::kStays) {
+        return stay_in(markov, shares, measure.place);
+    }
+    double rate = 0;
+    for (const net::Moment& moment : measure.from) {
+        rate += markov.rate(shares, moment.transition);
+    }
+    return rate;
 }
 
 std::optional<SimTime> time_argument(const Arguments& arguments, const char* name,
@@ -146,6 +222,12 @@ std::optional<int> solve_as_queues(const Arguments& arguments, const scene::Scen
     }
     std::vector<Row> rows;
     for (const sim::Metric& m : metrics) {
+        if (m.kind == sim::MetricKind::kMeasure) {  // the chain knows those
+            if (arguments.given("--measure")) {
+                return std::nullopt;
+            }
+            continue;
+        }
         sim::Metric in_draft = m;
         in_draft.element =
             sim::of_transition(m.kind)
@@ -153,7 +235,7 @@ std::optional<int> solve_as_queues(const Arguments& arguments, const scene::Scen
                 : number_in(scene.draft.places, scene.net.place({m.element}).path);
         const std::optional<double> value = solved->value(in_draft);
         if (value) {
-            rows.push_back({sim::name_of(scene.net, m), *value, sim::unit_of(m.kind)});
+            rows.push_back({sim::name_of(scene.net, m), *value, sim::unit_of(scene.net, m)});
         } else if (arguments.given("--measure")) {
             return std::nullopt;
         }
@@ -199,17 +281,20 @@ int solve(const Arguments& arguments) {
             say_error(metric.error());
             return kBadInput;
         }
-        if (!solvable(metric->kind, !at)) {
-            say_error(text + (at ? " is no measure of an instant: PLACE.tokens and PLACE.busy are"
-                                 : " has no long run: PLACE.tokens, .busy, .stay and "
-                                   "TRANSITION.rate have"));
+        if (!solvable(net, *metric, !at)) {
+            say_error(text +
+                      (at ? " is no measure of an instant: PLACE.tokens and PLACE.busy are, and "
+                            "declared means and shares of the state"
+                          : " cannot be solved: PLACE.tokens, .busy, .stay and "
+                            "TRANSITION.rate can, and declared means and shares of the "
+                            "state, mean times in places, and rates"));
             return kBadInput;
         }
         metrics.push_back(*metric);
     }
     if (metrics.empty()) {
         metrics = sim::all_metrics(net);
-        std::erase_if(metrics, [&](const sim::Metric& m) { return !solvable(m.kind, !at); });
+        std::erase_if(metrics, [&](const sim::Metric& m) { return !solvable(net, m, !at); });
     }
     if (scene != nullptr && !at && atoms.empty()) {
         if (const std::optional<int> told = solve_as_queues(arguments, *scene, metrics)) {
@@ -266,7 +351,7 @@ int solve(const Arguments& arguments) {
         residual = s.residual;
         for (const sim::Metric& m : metrics) {
             rows.push_back(
-                {sim::name_of(net, m), value_of(markov, s.values, m), sim::unit_of(m.kind)});
+                {sim::name_of(net, m), value_of(net, markov, s.values, m), sim::unit_of(net, m)});
         }
     }
     return tell(arguments, rows, "states", markov.chain.size(), "", residual);
@@ -298,7 +383,9 @@ Command solve_command() {
         "(Jackson; closed:\n"
         "mean value analysis) is told in that form. What is in the way is named; exit 3 then.\n\n"
         "Measures are those of `puppetri sweep`: PLACE.tokens, PLACE.busy, PLACE.stay, "
-        "TRANSITION.rate.\n\n"
+        "TRANSITION.rate,\n"
+        "and what the scene declares of means and shares of the state, mean times in places, "
+        "rates.\n\n"
         "Examples:\n"
         "  puppetri solve shop.pup\n"
         "  puppetri solve shop.pup --measure shop.queue.stay --json\n"

@@ -14,6 +14,7 @@
 #include "interrupt.h"
 #include "measures.h"
 #include "puppetri/base/hash.h"
+#include "puppetri/base/text.h"
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/net/tables.h"
@@ -22,6 +23,7 @@
 #include "puppetri/sim/net_experiment.h"
 #include "sweep_grid.h"
 #include "sweep_journal.h"
+#include "sweep_pilot.h"
 #include "sweep_report.h"
 #include "terminal.h"
 
@@ -75,6 +77,8 @@ struct Request {
     std::vector<Varied> varied;
     sim::Plan plan;
     std::optional<SimTime> until, warm_up;
+    bool finds_warm_up = false;            // --warm-up auto
+    std::optional<std::uint32_t> batches;  // of one run, instead of replications; 0: auto
     std::optional<std::uint64_t> firings;
     std::vector<std::string> measures;
 };
@@ -118,10 +122,25 @@ Result<Request, std::string> parse_request(const Arguments& a, const scene::Fram
         r.until = horizon.time;
         r.firings = horizon.firings;
     }
-    if (a.given("--warm-up")) {
+    if (a.given("--batches")) {
+        const std::string text = a.text("--batches");
+        const long count = text == "auto" ? 0 : std::strtol(text.c_str(), &end, 10);
+        if (text != "auto" && (*end != '\0' || count < 2 || count > 1'000'000)) {
+            return Unexpected(
+                std::string("--batches: write how many, from 2 (10 to 30 are usual), or auto"));
+        }
+        if (r.plan.antithetic || a.given("--replications")) {
+            return Unexpected(
+                std::string("--batches cut one run: leave out --replications and --antithetic"));
+        }
+        r.batches = static_cast<std::uint32_t>(count);
+    }
+    if (a.text("--warm-up") == "auto") {
+        r.finds_warm_up = true;
+    } else if (a.given("--warm-up")) {
         PUP_TRY(const scene::Horizon horizon, parse_horizon(a.text("--warm-up"), rate));
         if (!horizon.time) {
-            return Unexpected(std::string("--warm-up: write a time (40s) or frames (960f)"));
+            return Unexpected(std::string("--warm-up: write a time (40s), frames (960f), or auto"));
         }
         r.warm_up = horizon.time;
     }
@@ -198,6 +217,7 @@ std::uint64_t fingerprint(const std::vector<scene::Scene>& scenes, const SweepRe
     }
     h.add_u64(result.seed).add_f64(result.horizon_s).add_f64(result.warm_up_s);
     h.add_u64(request.firings.value_or(0)).add_u64(request.plan.antithetic ? 1 : 0);
+    h.add_f64(result.batch_s);
     return h.value();
 }
 
@@ -278,17 +298,21 @@ int sweep(const Arguments& arguments) {
             "the scene does not say where a run ends: write `until 8 h` in it, or give --for");
         return kBadInput;
     }
-    const SimTime warm_up = request->warm_up.value_or(SimTime{0});
+    SimTime warm_up = request->warm_up.value_or(SimTime{0});
     if (warm_up >= limits.until) {
         say_error("the warm-up is not shorter than the run: nothing would be measured");
         return kBadInput;
     }
+    if ((request->finds_warm_up || request->batches) && limits.until == SimTime::never()) {
+        say_error("--warm-up auto and --batches cut runs by time: give --for a time");
+        return kBadInput;
+    }
     result.horizon_s = limits.until == SimTime::never() ? 0 : limits.until.seconds();
-    result.warm_up_s = warm_up.seconds();
     const auto metrics_of =
         [&](const net::Net& net) -> Result<std::vector<sim::Metric>, std::string> {
         if (request->measures.empty()) {
-            return sim::all_metrics(net);
+            std::vector<sim::Metric> declared = sim::declared_metrics(net);
+            return declared.empty() || arguments.given("--all") ? sim::all_metrics(net) : declared;
         }
         std::vector<sim::Metric> metrics;
         for (const std::string& text : request->measures) {
@@ -306,7 +330,8 @@ int sweep(const Arguments& arguments) {
         }
         std::vector<MeasureName> names;
         for (const sim::Metric& m : *list) {
-            names.push_back({sim::name_of(scene.net, m), sim::unit_of(m.kind)});
+            names.push_back({sim::name_of(scene.net, m), sim::unit_of(scene.net, m),
+                             sim::caption_of(scene.net, m)});
         }
         if (result.measures.empty()) {
             result.measures = std::move(names);
@@ -326,6 +351,55 @@ int sweep(const Arguments& arguments) {
         for (std::size_t m = 0; m < result.measures.size(); ++m) {
             plan.precise.push_back(m);
         }
+    }
+    std::vector<PilotPoint> pilots;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        sim::NetExperiment::Options options;
+        options.limits = limits;
+        options.beat = scenes[i].beat;
+        if (needs_stage(scenes[i])) {
+            options.host = make_stage;
+            options.coupled = coupled_to;
+            options.context = &scenes[i];
+        }
+        pilots.push_back({&scenes[i].net, &metrics[i], options});
+    }
+    if (request->finds_warm_up) {
+        auto found = find_warm_up(pilots, plan.seed, limits.until);
+        if (!found) {
+            say_diagnostics(found.error());
+            return kFailed;
+        }
+        warm_up = *found;
+        say("warm-up: " + number_to_text(warm_up.seconds()) +
+            " s, by the marginal standard error rule");
+    }
+    for (PilotPoint& p : pilots) {
+        p.options.warm_up = warm_up;
+    }
+    result.warm_up_s = warm_up.seconds();
+    SimTime batch_length;
+    if (request->batches) {
+        std::uint32_t count = *request->batches;
+        if (count == 0) {
+            auto found = find_batches(pilots, plan.seed, warm_up, limits.until);
+            if (!found) {
+                say_diagnostics(found.error());
+                return kFailed;
+            }
+            count = *found;
+        }
+        batch_length = {(limits.until.ticks - warm_up.ticks) / count};
+        if (batch_length.ticks == 0) {
+            say_error("the batches are shorter than a tick: make the run longer, or them fewer");
+            return kBadInput;
+        }
+        result.batch_s = batch_length.seconds();
+        plan.replications = count;
+        plan.at_most = std::max<std::uint64_t>(plan.at_most, count);
+        plan.threads = 1;
+        say("batches: " + std::to_string(count) + " of " + number_to_text(result.batch_s) +
+            " s each, of one run");
     }
     const Share share = share_of_environment();
     plan.rank = share.rank;
@@ -356,17 +430,16 @@ int sweep(const Arguments& arguments) {
         for (std::size_t i = 0; i < scenes.size() && !stopped; ++i) {
             watch.point = i;
             plan.journal = journal ? &journal->point(i) : nullptr;
-            sim::NetExperiment::Options options;
-            options.limits = limits;
-            options.warm_up = warm_up;
-            options.beat = scenes[i].beat;
-            if (needs_stage(scenes[i])) {
-                options.host = make_stage;
-                options.coupled = coupled_to;
-                options.context = &scenes[i];
+            if (request->batches) {
+                plan.owner = static_cast<unsigned>(i % share.ranks);
+                result.points[i].outcome =
+                    sim::replicate(sim::BatchExperiment(scenes[i].net, metrics[i],
+                                                        pilots[i].options, batch_length, plan.seed),
+                                   plan);
+            } else {
+                result.points[i].outcome = sim::replicate(
+                    sim::NetExperiment(scenes[i].net, metrics[i], pilots[i].options), plan);
             }
-            const sim::NetExperiment experiment(scenes[i].net, metrics[i], options);
-            result.points[i].outcome = sim::replicate(experiment, plan);
             const sim::Outcome& outcome = result.points[i].outcome;
             stopped = outcome.interrupted;
             missing = missing || outcome.missing;
@@ -442,7 +515,10 @@ Command sweep_command() {
         "           PLACE.most    the largest number                  PLACE.busy  share of the "
         "time "
         "with a token\n"
-        "           TRANSITION.rate  firings per second               TRANSITION.firings\n\n"
+        "           TRANSITION.rate  firings per second               TRANSITION.firings\n"
+        "           or what the scene declares (`measure wait mean of time in queue`), which is "
+        "all "
+        "that is shown then\n\n"
         "Parameters: a.out is the argument `out` of `use ... as a`; a datum; PLACE.takes; "
         "PLACE.tokens.\n\n"
         "With --until-half-width more runs are made, in stages, until the interval of every "
@@ -458,6 +534,7 @@ Command sweep_command() {
         "  puppetri sweep shop.pup --vary 'shop.arrival=10 s .. 30 s by 5 s' --vary "
         "'chair.takes=20 s, exponential(20 s)'\n"
         "  puppetri sweep shop.pup --measure queue.stay --until-half-width 1% --warm-up 3600s\n"
+        "  puppetri sweep shop.pup --for 1000h --batches auto --warm-up auto\n"
         "  mpirun -n 8 puppetri sweep shop.pup --journal sweep.journal --csv out.csv",
         {{"scene", Value::kText, "SCENE", "a .pup file with a scene", true},
          {"--vary", Value::kTexts, "PARAMETER=VALUES",
@@ -469,7 +546,12 @@ Command sweep_command() {
          {"--at-most", Value::kInteger, "N", "runs per point in all (1000000)", false},
          {"--measure", Value::kTexts, "MEASURE", "what to measure; without: everything", false},
          {"--level", Value::kText, "P", "of the confidence intervals (95%)", false},
-         {"--warm-up", Value::kText, "T", "leave out what happens before", false},
+         {"--warm-up", Value::kText, "T",
+          "leave out what happens before; auto: until the measures have settled", false},
+         {"--batches", Value::kText, "N",
+          "one long run, cut into so many stretches, instead of replications; auto: as many as do "
+          "not depend on each other",
+          false},
          {"--for", Value::kText, "HOW LONG", "instead of the scene's horizon: 8h, 960f, 1000x",
           false},
          {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
@@ -480,7 +562,8 @@ Command sweep_command() {
           "keep every run there: a killed sweep goes on, processes share", false},
          {"--csv", Value::kText, "FILE", "the table as CSV; - for stdout", false},
          {"--html", Value::kText, "FILE", "one page with plots, for a browser", false},
-         {"--all", Value::kFlag, "", "also measures that are 0 in every run", false},
+         {"--all", Value::kFlag, "",
+          "every measure of every place and transition, also those that are 0 in every run", false},
          {"--json", Value::kFlag, "", "everything as JSON on stdout", false}},
         sweep};
 }

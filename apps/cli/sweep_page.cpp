@@ -118,6 +118,9 @@ std::string means_plot(const SweepResult& result, std::size_t m) {
     double low = INFINITY, high = -INFINITY;
     for (const SweepPoint& p : result.points) {
         const sim::Confidence& c = p.outcome.means[m];
+        if (std::isnan(c.mean)) {
+            continue;
+        }
         const double half = std::isfinite(c.half_width) ? c.half_width : 0;
         low = std::min(low, c.mean - half);
         high = std::max(high, c.mean + half);
@@ -138,6 +141,9 @@ std::string means_plot(const SweepResult& result, std::size_t m) {
     const std::size_t every = std::max<std::size_t>(1, n / 8);
     for (std::size_t i = 0; i < n; ++i) {
         const sim::Confidence& c = result.points[i].outcome.means[m];
+        if (std::isnan(c.mean)) {
+            continue;
+        }
         const double px = place(i), py = y_of(y.share(c.mean));
         if (std::isfinite(c.half_width)) {
             svg += line(px, y_of(y.share(c.mean - c.half_width)), px,
@@ -165,7 +171,9 @@ std::string means_plot(const SweepResult& result, std::size_t m) {
 std::string histogram(const sim::Outcome& outcome, std::size_t m) {
     std::vector<double> values;
     for (std::size_t i = 0; i < outcome.numbers.size(); ++i) {
-        values.push_back(outcome.row(i)[m]);
+        if (const double x = outcome.row(i)[m]; !std::isnan(x)) {
+            values.push_back(x);
+        }
     }
     if (values.empty()) {
         return "";
@@ -227,6 +235,9 @@ std::string sweep_page(const SweepResult& result) {
     if (result.warm_up_s > 0) {
         out += ", warm-up " + label(result.warm_up_s) + " s";
     }
+    if (result.batch_s > 0) {
+        out += ", batches of " + label(result.batch_s) + " s of one run";
+    }
     out += " &#183; intervals of " + label(100 * result.level) + " %</p>\n<main>\n";
     const bool varied = result.points.size() > 1;
     std::vector<std::size_t> shown;
@@ -235,7 +246,8 @@ std::string sweep_page(const SweepResult& result) {
             std::any_of(result.points.begin(), result.points.end(), [&](const SweepPoint& p) {
                 return std::any_of(p.outcome.numbers.begin(), p.outcome.numbers.end(),
                                    [&, i = std::size_t{0}](std::uint64_t) mutable {
-                                       return p.outcome.row(i++)[m] != 0;
+                                       const double x = p.outcome.row(i++)[m];
+                                       return x != 0 && !std::isnan(x);
                                    });
             });
         if (moves) {

@@ -14,7 +14,9 @@ namespace {
 sim::Tally tally_of(const sim::Outcome& outcome, std::size_t column) {
     sim::Tally tally;
     for (std::size_t i = 0; i < outcome.numbers.size(); ++i) {
-        tally.add(outcome.row(i)[column]);
+        if (const double x = outcome.row(i)[column]; !std::isnan(x)) {
+            tally.add(x);
+        }
     }
     return tally;
 }
@@ -117,6 +119,9 @@ std::string sweep_json(const SweepResult& result) {
         json.member("horizon_s", result.horizon_s);
     }
     json.member("warm_up_s", result.warm_up_s);
+    if (result.batch_s > 0) {
+        json.member("batch_s", result.batch_s);
+    }
     json.key("points").begin_array();
     for (const SweepPoint& point : result.points) {
         const sim::Outcome& o = point.outcome;
@@ -134,6 +139,10 @@ std::string sweep_json(const SweepResult& result) {
             const sim::Tally t = tally_of(o, m);
             json.key(result.measures[m].name).begin_object();
             json.member("unit", result.measures[m].unit);
+            if (!result.measures[m].caption.empty()) {
+                json.member("caption", result.measures[m].caption);
+            }
+            json.member("replications", static_cast<std::int64_t>(t.count()));
             json.member("mean", o.means[m].mean);
             json.member("half_width", o.means[m].half_width);
             json.member("deviation", t.deviation());

@@ -11,8 +11,9 @@
 namespace puppetri::cli {
 
 struct MeasureName {
-    std::string name;  // "queue.stay"
-    std::string unit;  // "s", or empty
+    std::string name;          // "queue.stay"
+    std::string unit;          // "s", or empty
+    std::string caption = {};  // what people read beside the name, or empty
 };
 
 struct SweepPoint {
@@ -26,6 +27,7 @@ struct SweepResult {
     std::uint64_t seed = 1;
     double level = 0.95;
     double horizon_s = 0, warm_up_s = 0;  // 0: none
+    double batch_s = 0;                   // above 0: replications are batches of one run
     std::vector<MeasureName> measures;
     std::vector<SweepPoint> points;
 };

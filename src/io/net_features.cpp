@@ -70,6 +70,9 @@ class Collector {
         for (const net::TimeQuestion& q : draft_.questions) {
             use(NetFeature::kStatements, "question " + q.path, q.where);
         }
+        for (const net::MeasureDraft& m : draft_.measures) {
+            use(NetFeature::kStatements, "measure " + m.path, m.where);
+        }
         for (const net::NamedState& s : draft_.states) {
             use(NetFeature::kStatements, "state " + s.path, s.where);
         }

@@ -29,6 +29,7 @@ class Builder {
     Use use(std::uint32_t node);
     Rule rule(std::uint32_t node);
     Question question(std::uint32_t node);
+    Measure measure(std::uint32_t node);
     For loop(std::uint32_t node);  // this and the following without their bodies
     Net net(std::uint32_t node);
     Block block(std::uint32_t node);
@@ -96,6 +97,7 @@ class Builder {
     Parameter parameter(std::uint32_t node);
     std::vector<Parameter> parameters(std::uint32_t parent);
     Binding binding(std::uint32_t node);
+    std::vector<Moment> moments(std::uint32_t node);
     Arc arc(std::uint32_t node, ArcKind kind);
     void place_clause(std::uint32_t node, Place& out);
     void transition_clause(std::uint32_t node, Transition& out);

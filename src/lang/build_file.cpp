@@ -115,6 +115,53 @@ Question Builder::question(std::uint32_t node) {
     return out;
 }
 
+std::vector<Moment> Builder::moments(std::uint32_t node) {
+    std::vector<Moment> out;
+    for (const std::uint32_t c : children(node)) {
+        Moment& moment = out.emplace_back();
+        moment.transition = child_path(c);
+        moment.span = span(c);
+        if (const std::uint32_t key = child(c, NodeKind::kExpr); key != 0) {
+            moment.key = expr(key);
+        }
+    }
+    return out;
+}
+
+Measure Builder::measure(std::uint32_t node) {
+    Measure out;
+    out.name = name(child(node, NodeKind::kName));
+    out.caption = caption(node);
+    out.span = span(node);
+    const std::uint32_t form = child(node, NodeKind::kForm);
+    out.statistic = name(child(form, NodeKind::kName));
+    if (const std::uint32_t percent = child(form, NodeKind::kNumber); percent != 0) {
+        number(percent, out.percent);
+        out.percent.kind = ExprKind::kNumber;
+        out.percent.span = span(percent);
+    }
+    std::vector<std::vector<Moment>> lists;
+    for (const std::uint32_t c : children(form)) {
+        if (kind(c) == NodeKind::kPath) {
+            out.place = path(c);
+            out.seen = Seen::kStay;
+        } else if (kind(c) == NodeKind::kMoments) {
+            lists.push_back(moments(c));
+        }
+    }
+    if (lists.size() == 2) {
+        out.seen = Seen::kPassage;
+        out.to = std::move(lists[1]);
+    }
+    if (!lists.empty()) {
+        out.from = std::move(lists[0]);
+    }
+    if (const std::uint32_t value = child(form, NodeKind::kExpr); value != 0) {
+        (out.seen == Seen::kExpr ? out.value : out.above) = expr(value);
+    }
+    return out;
+}
+
 For Builder::loop(std::uint32_t node) {
     For out;
     out.variable = name(child(node, NodeKind::kName));

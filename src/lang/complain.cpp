@@ -31,6 +31,9 @@ constexpr std::array kForms = {
     Form{Kind::kRule, "rule NAME \"caption\" never A and B, or A leads to B within 2 s, ..."},
     Form{Kind::kQuestionWord,
          "question NAME \"caption\" shortest time to A, or longest time to A, or cycle time of A"},
+    Form{Kind::kMeasure,
+         "measure NAME \"caption\" mean of #PLACE, or mean of time in PLACE, or count of "
+         "TRANSITION, ..."},
     Form{Kind::kFor, "for NAME in (a, b) { ... }, or for NAME in 1 .. 5 { ... }"},
     Form{Kind::kNet, "net NAME(PARAMETER: TYPE, ...) { ... }"},
     Form{Kind::kMachine, "machine NAME(PARAMETER: TYPE, ...) { ... }"},

@@ -351,6 +351,7 @@ class Formatter {
             case Kind::kUse:
             case Kind::kRule:
             case Kind::kQuestionWord:
+            case Kind::kMeasure:
                 return kind_at(first);
             case Kind::kState:  // of a machine, which is a row like a place's; others are formulas
                 for (std::size_t i = first; i < end; ++i) {
@@ -398,6 +399,7 @@ class Formatter {
                 return kind == Kind::kAs ? at_least(1) : column;
             case Kind::kRule:  // rule NAME | caption | form
             case Kind::kQuestionWord:
+            case Kind::kMeasure:
                 if (first_string) {
                     return at_least(1);
                 }
@@ -464,11 +466,13 @@ class Formatter {
         }
     }
 
-    // Behind `place NAME`, `rule NAME` or `question NAME`, the name with its indices included.
+    // Behind `place NAME`, `rule NAME`, `question NAME` or `measure NAME`, the name with its
+    // indices included.
     bool after_head(std::size_t begin, std::size_t i) const {
         std::size_t at = begin;
         while (at < i && pieces_[at].kind != Kind::kPlace && pieces_[at].kind != Kind::kState &&
-               pieces_[at].kind != Kind::kRule && pieces_[at].kind != Kind::kQuestionWord) {
+               pieces_[at].kind != Kind::kRule && pieces_[at].kind != Kind::kQuestionWord &&
+               pieces_[at].kind != Kind::kMeasure) {
             ++at;
         }
         ++at;  // the name
@@ -510,9 +514,11 @@ class Formatter {
 
     // Clauses stand two columns apart in a table, everything else one.
     static std::size_t gap_before(Kind table, int column) {
-        const bool clause = ((table == Kind::kPlace || table == Kind::kState) && column >= 2) ||
-                            (table == Kind::kArrow && column >= 3) ||
-                            ((table == Kind::kRule || table == Kind::kQuestionWord) && column >= 2);
+        const bool clause =
+            ((table == Kind::kPlace || table == Kind::kState) && column >= 2) ||
+            (table == Kind::kArrow && column >= 3) ||
+            ((table == Kind::kRule || table == Kind::kQuestionWord || table == Kind::kMeasure) &&
+             column >= 2);
         return clause ? 2 : 1;
     }
 

@@ -335,6 +335,16 @@ struct question_form : sor<
     form<sor<tok<K::kShortest>, tok<K::kLongest>>, tok<K::kTime>, tok<K::kTo>, expr>,
     form<tok<K::kCycle>, tok<K::kTime>, tok<K::kOf>, expr>> {};
 
+// ---- measures
+
+struct moment : node<N::kMoment, path, opt<tok<K::kOpenParen>, inner, tok<K::kCloseParen>>> {};
+struct moments : node<N::kMoments, list<moment, K::kOr>> {};
+struct above : opt<tok<K::kGreater>, expr> {};
+struct measure_form : form<name, opt<bare_number>, tok<K::kOf>,
+                           sor<seq<tok<K::kTime>, tok<K::kIn>, path, above>,
+                               seq<tok<K::kTime>, tok<K::kFrom>, moments, tok<K::kTo>, moments, above>,
+                               seq<expr, opt<tok<K::kAt>, moments>>>> {};
+
 // ---- statements
 
 template <NodeKind S, class... R> struct statement : node<S, R..., finish> {};
@@ -364,6 +374,8 @@ struct events : statement<N::kEvents, tok<K::kEvents>, tok<K::kFrom>, text> {};
 struct use : statement<N::kUse, tok<K::kUse>, sor<text, seq<path, opt<arguments>>>, opt<tok<K::kAs>, name>> {};
 struct rule : node<N::kRule, tok<K::kRule>, name, opt<caption>, rule_form> {};
 struct question : statement<N::kQuestion, tok<K::kQuestionWord>, name, opt<caption>, question_form> {};
+
+struct measure : statement<N::kMeasure, tok<K::kMeasure>, name, opt<caption>, measure_form> {};
 
 // What opens a block ends before its brace.
 struct loop : statement<N::kFor, tok<K::kFor>, name, tok<K::kIn>, expr> {};
@@ -402,7 +414,7 @@ struct import : statement<N::kImport, tok<K::kImport>, list<name, K::kComma>, to
 // a brace follows.
 struct transition_ahead : ahead<is_public, name, opt<caption>, tok<K::kColon>> {};
 struct any_statement : sor<seq<transition_ahead, transition>, place, state, machine_state, channel, data, token_type, event, events, use, rule,
-                           question, loop, net, cast, ends, enumeration, header, import, block> {};
+                           question, measure, loop, net, cast, ends, enumeration, header, import, block> {};
 
 struct value_expr : expression<value_expr, seq<no_sign, any_op>> {};
 struct value : sor<value_expr, node<N::kSymbol, sor<tok<K::kArrow>, tok<K::kColon>, tok<K::kAssign>, tok<K::kEqual>>>> {};

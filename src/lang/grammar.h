@@ -40,6 +40,8 @@ enum class NodeKind : std::uint8_t {
     kClause,     // by its first token
     kForm,       // of a rule or a question, by its first token unless it begins with a kExpr
     kSettled,
+    kMoments,  // kMoment...
+    kMoment,   // kPath, perhaps kExpr
     // Statements
     kPlace,
     kTransition,
@@ -54,6 +56,7 @@ enum class NodeKind : std::uint8_t {
     kUse,
     kRule,
     kQuestion,
+    kMeasure,
     kFor,
     kNet,
     kCast,

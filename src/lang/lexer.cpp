@@ -94,6 +94,7 @@ struct Lexer {
             case Kind::kWithin:
             case Kind::kMost:
             case Kind::kLeast:
+            case Kind::kOf:
             case Kind::kPriority:
             case Kind::kOdds:
             case Kind::kTakes:
@@ -360,6 +361,7 @@ bool forgets_bracket(const Token& first, const Token& second) {
         case Kind::kPlace:
         case Kind::kRule:
         case Kind::kQuestionWord:
+        case Kind::kMeasure:
         case Kind::kNet:
         case Kind::kMachine:
         case Kind::kChannel:
@@ -437,6 +439,7 @@ bool begins_statement(Kind kind) {
         case Kind::kUse:
         case Kind::kRule:
         case Kind::kQuestionWord:
+        case Kind::kMeasure:
         case Kind::kFor:
         case Kind::kNet:
         case Kind::kCast:

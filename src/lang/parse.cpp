@@ -452,6 +452,9 @@ class Parser {
             case NodeKind::kQuestion:
                 out.questions.push_back(b.question(0));
                 break;
+            case NodeKind::kMeasure:
+                out.measures.push_back(b.measure(0));
+                break;
             case NodeKind::kHeader:
                 b.header(0, file_.header);
                 break;

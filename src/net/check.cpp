@@ -553,6 +553,49 @@ class Check {
         }
     }
 
+    void check_measure(const MeasureDraft& m) {
+        Scope s;
+        s.where = &m.where;
+        s.element = "measure " + m.path;
+        const auto want_value = [&](const Expr& e, const Scope& scope) {
+            const bool share = m.statistic == Statistic::kShare ||
+                               m.statistic == Statistic::kCount || m.statistic == Statistic::kRate;
+            const ValueKind kind = e.type().kind;
+            want(e, scope,
+                 share ? kind == ValueKind::kBool
+                       : kind == ValueKind::kInt || kind == ValueKind::kReal ||
+                             kind == ValueKind::kTime,
+                 share ? "a bool" : "a number or a time");
+        };
+        const bool counts = m.statistic == Statistic::kCount || m.statistic == Statistic::kRate;
+        if (m.seen == Seen::kState) {
+            want_value(m.value, s);
+        }
+        const bool of_times = m.seen == Seen::kStays || m.seen == Seen::kPassages;
+        if (m.seen == Seen::kState && (counts || m.statistic == Statistic::kPercentile)) {
+            fail(s, "type-mismatch", "counts what is there all the time",
+                 "name what is to be seen");
+        }
+        if (of_times && m.statistic == Statistic::kShare && !m.above) {
+            fail(s, "type-mismatch", "a share of times needs a time that they are above",
+                 "write `above 5 min`");
+        }
+        if (!(m.percent > 0 && m.percent <= 100)) {
+            fail(s, "type-mismatch", "a percentage is above 0 and at most 100", "write 90");
+        }
+        for (const std::vector<Moment>* list : {&m.from, &m.to}) {
+            for (const Moment& moment : *list) {
+                Scope at = s;
+                at.variables = &net_.transitions[moment.transition.value].variables;
+                if (m.seen == Seen::kFirings && (moment.keyed || !counts)) {
+                    want_value(moment.value, at);
+                } else if (m.seen == Seen::kPassages && moment.keyed) {
+                    want(moment.value, at, true, "a value");
+                }
+            }
+        }
+    }
+
     void check_formulas() {
         for (const NamedState& n : net_.states) {
             check_formula(n.condition, n.where, "state " + n.path);
@@ -564,6 +607,9 @@ class Check {
         }
         for (const TimeQuestion& q : net_.questions) {
             check_formula(q.about, q.where, "question " + q.path);
+        }
+        for (const MeasureDraft& m : net_.measures) {
+            check_measure(m);
         }
         for (const FinalMarkingDraft& f : net_.finals) {
             check_formula(f.condition, f.where, "end");

@@ -111,6 +111,13 @@ class Compiler {
                 raise(p, PlaceKind::kRich);
             }
         }
+        for (const MeasureDraft& m : net_.measures) {
+            // Who leaves when is known of records alone, but for the usual order
+            if (m.seen == Seen::kStays &&
+                net_.places[m.place.value].discipline != Discipline::kOldest) {
+                raise(m.place.value, PlaceKind::kRich);
+            }
+        }
         for (const TransitionDraft& t : net_.transitions) {
             out_.paced = out_.paced && !t.delay;
             for (const OutputDraft& o : t.outputs) {
@@ -653,6 +660,16 @@ class Compiler {
                          });
     }
 
+    ProgramIndex measure_program(const Expr& e, const MeasureDraft& m) {
+        auto added = out_.measure_code.add(e);
+        if (!added) {
+            report(defects_, "expression-too-deep", m.where, "measure " + m.path,
+                   added.error().message, "measure its parts");
+            return {};
+        }
+        return *added;
+    }
+
     void keep_declarations() {
         for (FinalMarkingDraft& f : net_.finals) {
             NetTables::FinalMarking m;
@@ -661,6 +678,16 @@ class Compiler {
                 m.programs.push_back(program(e, f.where, "end"));
             }
             out_.finals.push_back(std::move(m));
+        }
+        for (const MeasureDraft& m : net_.measures) {
+            NetTables::MeasurePrograms& programs = out_.measures.emplace_back();
+            programs.value = measure_program(m.value, m);
+            for (const Moment& moment : m.from) {
+                programs.from.push_back(measure_program(moment.value, m));
+            }
+            for (const Moment& moment : m.to) {
+                programs.to.push_back(measure_program(moment.value, m));
+            }
         }
         std::vector<PlaceDraft>().swap(net_.places);
         std::vector<TransitionDraft>().swap(net_.transitions);

@@ -410,6 +410,11 @@ void Engine::add_timed(std::uint32_t p, std::int64_t ticks, std::uint32_t fifo) 
     const Counts was = c;
     ++c.total;
     total_changed(p, was.total, was.total + 1);
+    if (options_.listener != nullptr) {
+        std::int64_t ready = SimTime::never().ticks;
+        ends_at(ticks, ready);
+        options_.listener->arrives({state_.now}, {p}, {ready});
+    }
     if (ticks == 0) {
         ++c.ready;
         ready_changed(p, was.ready, was.ready + 1);
@@ -446,6 +451,9 @@ void Engine::fire(std::uint32_t t) {
             return;
         }
         state_.clocks[tables_->specials[tables_->transition[t].special].delay].clear();
+    }
+    if (options_.listener != nullptr) {
+        options_.listener->fires({state_.now}, {t}, *this);
     }
     take_plain(t);
     if (!touch_list_.empty()) {

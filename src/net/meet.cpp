@@ -33,7 +33,9 @@ class Meeting {
         const auto root = classes(net_.rendezvous, net_.transitions.size());
         for (std::uint32_t i = 0; i < root.size(); ++i) {
             if (root[i] != i) {
-                merge(net_.transitions[root[i]], std::move(net_.transitions[i]));
+                TransitionDraft& keep = net_.transitions[root[i]];
+                shift_moments(i, keep.variables.size());
+                merge(keep, std::move(net_.transitions[i]));
             }
         }
         std::vector<std::uint32_t> map = compact(net_.transitions, root);
@@ -313,10 +315,49 @@ class Meeting {
         keep.path += "|" + other.path;
     }
 
+    // Measures at a transition that is merged read its variables behind those of the other.
+    void shift_moments(std::uint32_t transition, std::size_t by) {
+        for (MeasureDraft& m : net_.measures) {
+            for (std::vector<Moment>* list : {&m.from, &m.to}) {
+                for (Moment& moment : *list) {
+                    if (moment.transition.value == transition) {
+                        shift_variables(moment.value, by);
+                    }
+                }
+            }
+        }
+    }
+
+    void rename_moments(const std::vector<std::vector<std::uint32_t>>& products,
+                        const std::vector<std::string>& paths) {
+        for (MeasureDraft& m : net_.measures) {
+            for (std::vector<Moment>* list : {&m.from, &m.to}) {
+                std::vector<Moment> renamed;
+                for (const Moment& moment : *list) {
+                    const auto& of = products[moment.transition.value];
+                    const std::string& path = paths[moment.transition.value];
+                    const bool same = of.size() == 1 && net_.transitions[of[0]].path == path;
+                    if (moment.keyed && !same) {
+                        report(defects_, "measure-at-channel", m.where, "measure " + m.path,
+                               path + " is an end of a channel, where values cannot be measured",
+                               "measure a place, or a transition beside it");
+                        continue;
+                    }
+                    for (const std::uint32_t p : of) {
+                        renamed.push_back(moment);
+                        renamed.back().transition = {p};
+                    }
+                }
+                *list = std::move(renamed);
+            }
+        }
+    }
+
     // Firings of an end are firings of any of its products.
     void rename(const std::vector<std::vector<std::uint32_t>>& products,
                 const std::vector<std::string>& paths) {
         each_formula(net_, [&](Formula& f) { f = renamed(f, products); });
+        rename_moments(products, paths);
         for (Rule& rule : net_.rules) {
             std::vector<TransitionIndex> transitions;
             for (const TransitionIndex t : rule.transitions) {

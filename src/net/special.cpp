@@ -288,6 +288,9 @@ void Engine::fire_special(std::uint32_t t) {
         }
         return;
     }
+    if (options_.listener != nullptr) {
+        options_.listener->fires({state_.now}, {t}, *this);
+    }
     assigned_.clear();
     for (const auto& [datum, program] : s.assignments) {
         const DatumDraft& d = tables_->declarations.data[datum];

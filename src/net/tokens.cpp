@@ -199,6 +199,9 @@ void Engine::remove_token(std::uint32_t rich, std::uint32_t slot, bool now) {
     const RichPlaceTable& table = tables_->rich[rich];
     RichTokens& place = state_.rich[rich];
     const Token token = place.pool[slot];
+    if (options_.listener != nullptr) {
+        options_.listener->leaves({state_.now}, {table.place}, {token.arrival});
+    }
     take_from_order(rich, slot);
     place.pool[slot].alive = false;
     place.free.push_back(slot);

@@ -16,7 +16,11 @@ struct Player::Data final : net::EngineListener {
     Data(const net::Net& n, const Options& o)
         : net(n),
           options(o),
+          wants(o.observer != nullptr ? o.observer->wants() : Observer::Wants{}),
           engine(n, o.chooser != nullptr ? *o.chooser : random, engine_options()) {
+        if (options.observer != nullptr) {
+            options.observer->prepare();
+        }
         engine.start();
     }
 
@@ -24,7 +28,8 @@ struct Player::Data final : net::EngineListener {
         net::EngineOptions e;
         e.seed = options.seed;
         e.host = options.host;
-        e.listener = options.sink != nullptr || !options.coupled.empty() ? this : nullptr;
+        e.listener =
+            options.sink != nullptr || wants.insides || !options.coupled.empty() ? this : nullptr;
         e.beat = options.beat.ticks;
         e.firings_per_instant = options.firings_per_instant;
         e.antithetic = options.antithetic;
@@ -51,6 +56,21 @@ struct Player::Data final : net::EngineListener {
             options.sink->lost(at, e);
         }
     }
+    void fires(SimTime at, net::TransitionIndex t, const Code::Reader& before) override {
+        if (wants.insides) {
+            options.observer->fires(at, t, before);
+        }
+    }
+    void arrives(SimTime at, net::PlaceIndex p, SimTime ready) override {
+        if (wants.insides) {
+            options.observer->arrives(at, p, ready);
+        }
+    }
+    void leaves(SimTime at, net::PlaceIndex p, SimTime arrived) override {
+        if (wants.insides) {
+            options.observer->leaves(at, p, arrived);
+        }
+    }
 
     net::Engine::Outcome run(std::int64_t until, std::uint64_t firings);
     net::Engine::Outcome run_coupled(std::int64_t until, std::uint64_t firings);
@@ -69,6 +89,7 @@ struct Player::Data final : net::EngineListener {
 
     const net::Net& net;
     Options options;
+    Observer::Wants wants;
     net::RandomChooser random;
     net::Engine engine;
     std::vector<OutsideEvent> recording;
@@ -154,11 +175,18 @@ net::Engine::Outcome Player::Data::run_coupled(std::int64_t until, std::uint64_t
         if (outcome == Outcome::kFired || outcome == Outcome::kFault) {
             return outcome;
         }
+        if (wants.instants && !whose.empty()) {
+            return Outcome::kSettled;  // a crossing that nobody used: something to look at
+        }
     }
 }
 
 Player::Player(const net::Net& net, const Options& options)
-    : data_(std::make_unique<Data>(net, options)) {}
+    : data_(std::make_unique<Data>(net, options)) {
+    if (options.observer != nullptr) {
+        options.observer->begins(*this);
+    }
+}
 Player::~Player() = default;
 Player::Player(Player&&) noexcept = default;
 Player& Player::operator=(Player&&) noexcept = default;
@@ -204,10 +232,32 @@ Stop Player::step(const Limits& limits) {
     if (firings() >= limits.firings) {
         return Stop::kLimit;
     }
-    return stop_of(data_->run(limits.until.ticks, firings() + 1), data_->engine);
+    Observer* const observer = data_->options.observer;
+    for (;;) {
+        const std::int64_t until = limits.until.ticks;
+        // Not beyond the next instant, for those who want to see it
+        const std::int64_t next =
+            data_->wants.instants ? std::min(until, data_->engine.next_time()) : until;
+        const Stop stop = stop_of(data_->run(next, firings() + 1), data_->engine);
+        if (observer != nullptr && stop == Stop::kNone) {
+            observer->fired(*this);
+        } else if (data_->wants.instants && stop != Stop::kFault) {
+            observer->passed(*this);
+        }
+        if (stop != Stop::kLimit || !data_->wants.instants || now().ticks >= until) {
+            return stop;
+        }
+    }
 }
 
 Stop Player::run(const Limits& limits) {
+    if (data_->options.observer != nullptr) {
+        Stop stop = Stop::kNone;
+        while (stop == Stop::kNone) {
+            stop = step(limits);
+        }
+        return stop;
+    }
     const Stop stop = stop_of(data_->run(limits.until.ticks, limits.firings), data_->engine);
     return stop == Stop::kNone ? Stop::kLimit : stop;
 }

@@ -362,6 +362,13 @@ class Elaboration {
     void complete_rules();
     void complete_rule(const Element<lang::Rule>& rule);
     void complete_question(const Element<lang::Question>& question);
+    // measures.cpp
+    void complete_measures();
+    void complete_measure(const Element<lang::Measure>& measure);
+    std::optional<Expr> seen_value(const lang::Expr& e, const Scope& scope, bool truth);
+    std::optional<net::TransitionIndex> moment_of(const lang::Path& path, const Scope& scope,
+                                                  Locals& locals);
+    std::vector<net::Moment> moments_of(const std::vector<lang::Moment>& list, const Scope& scope);
     void name_elements(const lang::Rule& node, const Scope& scope, net::Rule& out);
     net::Formula moves_of(motion::ActorIndex actor);
     void complete_ends();
@@ -390,6 +397,7 @@ class Elaboration {
     std::vector<std::optional<ValueType>> channel_types_;  // none: of signals, or wrong
     std::vector<Element<lang::Rule>> rules_;
     std::vector<Element<lang::Question>> questions_;
+    std::vector<Element<lang::Measure>> measures_;
     std::vector<Element<lang::End>> ends_;  // one per formula list
     std::vector<std::pair<const lang::EventFile*, Scope>> event_files_;
     std::vector<std::pair<const lang::Block*, Scope>> blocks_;

@@ -172,7 +172,8 @@ void Elaboration::expand(std::uint32_t number) {
 }
 
 void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
-    if (draft().places.size() + draft().transitions.size() + rules_.size() + questions_.size() >
+    if (draft().places.size() + draft().transitions.size() + rules_.size() + questions_.size() +
+            measures_.size() >
         kMaxElements) {
         error("net-too-large", statement_,
               "more than " + std::to_string(kMaxElements) + " elements",
@@ -276,6 +277,9 @@ void Elaboration::expand_body(const lang::Body& body, const Scope& scope) {
     }
     for (const lang::Question& q : body.questions) {
         questions_.push_back({&q, all_seeing, path_of_turn(q.name)});
+    }
+    for (const lang::Measure& m : body.measures) {
+        measures_.push_back({&m, all_seeing, path_of_turn(m.name)});
     }
     for (const lang::End& e : body.ends) {
         ends_.push_back({&e, scope, instances_[scope.instance].path});

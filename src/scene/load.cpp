@@ -68,6 +68,7 @@ void Elaboration::complete() {
     complete_refinements();
     complete_states();
     complete_rules();
+    complete_measures();
     complete_ends();
     complete_events();
     complete_equations();

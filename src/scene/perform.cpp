@@ -44,6 +44,7 @@ Session::Session(const Scene& scene, const PerformOptions& options)
                           .host = &stage_,
                           .chooser = script_ ? &*script_ : nullptr,
                           .sink = options.sink,
+                          .observer = options.observer,
                           .beat = scene.beat,
                           .coupled = beside_.coupled(stage_),
                           .record = options.record}) {

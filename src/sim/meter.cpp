@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Integrals over time, kept place by place and only when the place changes.
+// Integrals over time, kept place by place and only when the place changes; what is seen now and
+// then is in seen.cpp.
 #include "puppetri/sim/meter.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <limits>
 
 #include "puppetri/base/require.h"
 #include "puppetri/net/tables.h"
 
 namespace puppetri::sim {
 
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
 void Meter::Arrivals::push(std::int64_t at) {
     if (size == ring.size()) {
-        std::vector<std::int64_t> larger(std::max<std::size_t>(16, 2 * ring.size()));
+        std::vector<std::int64_t> larger(std::max<std::size_t>(4, 2 * ring.size()));
         for (std::uint32_t i = 0; i < size; ++i) {
             larger[i] = ring[(first + i) & (ring.size() - 1)];
         }
@@ -30,23 +38,42 @@ std::int64_t Meter::Arrivals::pop() {
 }
 
 Meter::Meter(const net::Net& net, std::span<const Metric> metrics, const Options& options)
-    : net_(&net), metrics_(metrics.begin(), metrics.end()), from_(options.from.ticks) {
+    : net_(&net),
+      metrics_(metrics.begin(), metrics.end()),
+      warm_up_(options.from.ticks),
+      from_(options.from.ticks) {
     number_.assign(net.place_count(), net::kNoIndex);
+    turns_.resize(net.transition_count());
+    turns_inside_.resize(net.transition_count());
     for (const Metric& m : metrics_) {
-        if (of_transition(m.kind)) {
+        if (m.kind == MetricKind::kMeasure) {
+            PUP_REQUIRE(m.element < net.declarations().measures.size());
+            add_measure(m.element);
+        } else if (of_transition(m.kind)) {
             PUP_REQUIRE(m.element < net.transition_count());
-
-            continue;
+            slots_.push_back(m.element);
+        } else {
+            PUP_REQUIRE(m.element < net.place_count());
+            slots_.push_back(place_number(m.element));
+            places_[slots_.back()].stays |= m.kind == MetricKind::kStay;
         }
-        PUP_REQUIRE(m.element < net.place_count());
-        if (number_[m.element] == net::kNoIndex) {
-            number_[m.element] = static_cast<std::uint32_t>(places_.size());
-            places_.push_back({.place = {m.element}});
-        }
-        places_[number_[m.element]].stays |= m.kind == MetricKind::kStay;
     }
-    const net::NetTables& tables = net.tables();
-    for (std::uint32_t t = 0; t < net.transition_count(); ++t) {
+    lay_out_arcs();
+    lay_out_watched();
+    firings_.assign(net.transition_count(), 0);
+}
+
+std::uint32_t Meter::place_number(std::uint32_t place) {
+    if (number_[place] == net::kNoIndex) {
+        number_[place] = static_cast<std::uint32_t>(places_.size());
+        places_.push_back({.place = {place}});
+    }
+    return number_[place];
+}
+
+void Meter::lay_out_arcs() {
+    const net::NetTables& tables = net_->tables();
+    for (std::uint32_t t = 0; t < net_->transition_count(); ++t) {
         std::map<std::uint32_t, Arc> row;
         const auto arc_of = [&](std::uint32_t place) {
             Arc* arc = nullptr;
@@ -89,21 +116,58 @@ Meter::Meter(const net::Net& net, std::span<const Metric> metrics, const Options
         }
         arcs_.starts.push_back(static_cast<std::uint32_t>(arcs_.items.size()));
     }
-    firings_.assign(net.transition_count(), 0);
 }
 
-void Meter::begin(const run::Player& player) {
-    PUP_REQUIRE(player.firings() == 0);
+void Meter::prepare() {
+    fault_.reset();
+    serials_ = 0;
+    for (Place& place : places_) {
+        place.arrivals.first = place.arrivals.size = 0;
+        place.waiting.clear();
+        place.fresh.clear();
+        place.tokens = 0;
+    }
+    for (Passage& passage : passages_) {
+        passage.begun.first = passage.begun.size = 0;
+        passage.begun_by_key.clear();
+    }
+    forget(warm_up_);
+}
+
+// What has been counted, not what is there.
+void Meter::forget(std::int64_t from) {
+    from_ = from;
     std::fill(firings_.begin(), firings_.end(), 0);
     for (Place& place : places_) {
-        place.tokens = place.most = player.tokens(place.place);
-        place.since = from_;
+        place.most = place.tokens;
+        place.since = from;
         place.token_ticks = place.busy_ticks = place.stay_ticks = 0;
         place.left = 0;
-        place.arrivals.first = place.arrivals.size = 0;
-        for (std::uint32_t i = 0; place.stays && i < place.tokens; ++i) {
+    }
+    for (Watched& w : watched_) {
+        w.most = w.least = w.value;
+        w.sum = 0;
+        w.since = from;
+    }
+    for (Seen& s : seen_) {
+        s.forget();
+    }
+}
+
+void Meter::begins(const run::Player& player) {
+    PUP_REQUIRE(player.firings() == 0);
+    for (Place& place : places_) {
+        place.tokens = place.most = player.tokens(place.place);
+        const bool in_order =
+            place.stays || (!place.seen.empty() && place.leaving == Leaving::kInOrder);
+        for (std::uint32_t i = 0; in_order && i < place.tokens; ++i) {
             place.arrivals.push(0);
         }
+        leave_by_readiness(place, 0, 0);
+    }
+    for (Watched& w : watched_) {
+        watch(w, player);
+        w.most = w.least = w.value;
     }
 }
 
@@ -130,18 +194,45 @@ void Meter::fired(const run::Player& player) {
             place.most = place.tokens;
         }
         place.most = std::max(place.most, place.tokens);
-        if (place.stays) {
-            const std::uint32_t leave =
-                arc.takes_all ? before + arc.gives - place.tokens : arc.takes;
+        if (!place.stays && place.seen.empty()) {
+            continue;
+        }
+        const std::uint32_t leave = arc.takes_all ? before + arc.gives - place.tokens : arc.takes;
+        if (place.stays || place.leaving == Leaving::kInOrder) {
             for (std::uint32_t i = 0; i < leave; ++i) {
                 const std::int64_t arrived = place.arrivals.pop();
                 place.stay_ticks += counts ? static_cast<double>(now - arrived) : 0;
+                if (place.leaving == Leaving::kInOrder) {
+                    stayed(place, now, arrived);
+                }
             }
             place.left += counts ? leave : 0;
             for (std::uint32_t i = 0; i < arc.gives; ++i) {
                 place.arrivals.push(now);
             }
         }
+        if (place.leaving == Leaving::kByReadiness) {
+            leave_by_readiness(place, leave, now);
+        }
+    }
+    if (!turns_[t].empty()) {
+        for (const Turn& each : turns_[t]) {
+            turn(each, now, 0);
+        }
+    }
+    if (!watched_.empty()) {
+        for (const std::uint32_t i : watched_at_.row(t)) {
+            watch(watched_[i], player);
+        }
+        for (const std::uint32_t i : watched_always_) {
+            watch(watched_[i], player);
+        }
+    }
+}
+
+void Meter::passed(const run::Player& player) {
+    for (const std::uint32_t i : watched_always_) {
+        watch(watched_[i], player);
     }
 }
 
@@ -152,30 +243,42 @@ void Meter::finish(SimTime end, std::span<double> values) {
     for (Place& place : places_) {
         integrate(place, end.ticks);
     }
-    for (std::size_t i = 0; i < metrics_.size(); ++i) {
-        const Metric& m = metrics_[i];
-        if (of_transition(m.kind)) {
-            const auto count = static_cast<double>(firings_[m.element]);
-            values[i] = m.kind == MetricKind::kFirings ? count : per_time(count) * kTicksPerSecond;
-            continue;
-        }
-        const Place& place = places_[number_[m.element]];
-        switch (m.kind) {
-            case MetricKind::kTokens:
-                values[i] = per_time(place.token_ticks);
-                break;
-            case MetricKind::kBusy:
-                values[i] = per_time(place.busy_ticks);
-                break;
-            case MetricKind::kMost:
-                values[i] = passed > 0 ? place.most : 0;
-                break;
-            default:
-                values[i] = place.left == 0 ? 0
-                                            : place.stay_ticks / static_cast<double>(place.left) /
-                                                  static_cast<double>(kTicksPerSecond);
+    for (Watched& w : watched_) {
+        if (end.ticks > w.since) {
+            w.sum += w.value * static_cast<double>(end.ticks - w.since);
+            w.since = end.ticks;
         }
     }
+    for (std::size_t i = 0; i < metrics_.size(); ++i) {
+        const std::uint32_t slot = slots_[i];
+        switch (metrics_[i].kind) {
+            case MetricKind::kTokens:
+                values[i] = per_time(places_[slot].token_ticks);
+                break;
+            case MetricKind::kBusy:
+                values[i] = per_time(places_[slot].busy_ticks);
+                break;
+            case MetricKind::kMost:
+                values[i] = passed > 0 ? places_[slot].most : 0;
+                break;
+            case MetricKind::kStay:
+                values[i] = places_[slot].left == 0 ? kNothing
+                                                    : places_[slot].stay_ticks /
+                                                          static_cast<double>(places_[slot].left) /
+                                                          static_cast<double>(kTicksPerSecond);
+                break;
+            case MetricKind::kFirings:
+                values[i] = static_cast<double>(firings_[slot]);
+                break;
+            case MetricKind::kRate:
+                values[i] = per_time(static_cast<double>(firings_[slot])) * kTicksPerSecond;
+                break;
+            case MetricKind::kMeasure:
+                values[i] = measured(metrics_[i].element, slot, passed);
+                break;
+        }
+    }
+    forget(end.ticks);
 }
 
 }  // namespace puppetri::sim

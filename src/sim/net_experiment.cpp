@@ -26,14 +26,15 @@ class NetRunner final : public Runner {
                 options.coupled = options_.coupled(*host);
             }
         }
+        options.observer = &meter_;
         run::Player player(net_, options);
-        meter_.begin(player);
-        run::Stop stop = run::Stop::kNone;
-        while ((stop = player.step(options_.limits)) == run::Stop::kNone) {
-            meter_.fired(player);
-        }
+        const run::Stop stop = player.run(options_.limits);
         if (stop == run::Stop::kFault) {
             fault = player.fault();
+            return false;
+        }
+        if (meter_.fault()) {
+            fault = *meter_.fault();
             return false;
         }
         // A net that rests goes on resting up to the horizon

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -70,7 +71,8 @@ class Stage {
                 return;
             }
             const std::uint64_t turn = plan_.antithetic ? number / 2 : number;
-            if (state_[number] != Known::kNo || turn % plan_.ranks != plan_.rank) {
+            const std::uint64_t player = plan_.owner ? *plan_.owner : turn % plan_.ranks;
+            if (state_[number] != Known::kNo || player != plan_.rank) {
                 done_.fetch_add(1, std::memory_order_relaxed);
                 continue;
             }
@@ -120,8 +122,11 @@ Tally observations(const Plan& plan, std::size_t width, std::size_t column,
         if (state[n] != Known::kFinished || state[n + step - 1] != Known::kFinished) {
             continue;  // half a pair says nothing
         }
-        const double x = values[n * width + column];
-        tally.add(step == 1 ? x : (x + values[(n + 1) * width + column]) / 2);
+        const double first = values[n * width + column];
+        const double x = step == 1 ? first : (first + values[(n + 1) * width + column]) / 2;
+        if (!std::isnan(x)) {  // a mean of nothing says nothing
+            tally.add(x);
+        }
     }
     return tally;
 }
@@ -205,6 +210,9 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
         outcome.means.push_back(plan.precision.wanted() && first_stage[c] >= 2
                                     ? staged_confidence(all, first_stage[c], plan.level)
                                     : confidence(all, plan.level));
+        if (all.count() == 0) {
+            outcome.means.back().mean = std::numeric_limits<double>::quiet_NaN();
+        }
     }
     for (std::uint64_t n = 0; n < state.size(); ++n) {
         if (state[n] == Known::kFinished) {

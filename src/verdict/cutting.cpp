@@ -58,6 +58,7 @@ std::vector<std::uint32_t> collectors(const NetDraft& lowered) {
     draft.rules.clear();
     draft.states.clear();
     draft.questions.clear();
+    draft.measures.clear();
     std::vector<std::uint8_t> given(draft.places.size(), 0), read(draft.places.size(), 0);
     for (net::TransitionDraft& t : draft.transitions) {
         for (const net::OutputDraft& out : t.outputs) {
@@ -144,6 +145,7 @@ NetDraft without_collectors(NetDraft draft) {
     }
     draft.states.clear();
     draft.questions.clear();
+    draft.measures.clear();
     std::vector<std::uint8_t> cut(draft.places.size(), 0);
     for (const std::uint32_t p : collectors(draft)) {
         if (asked[p] == 0) {

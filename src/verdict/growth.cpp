@@ -115,6 +115,7 @@ Growing::Growing(const Theatre& theatre, const net::NetDraft& lowered, const sta
     others.rules.clear();
     others.states.clear();
     others.questions.clear();
+    others.measures.clear();
     others.finals.clear();
     for (net::TransitionDraft& t : others.transitions) {
         t.inputs.clear();

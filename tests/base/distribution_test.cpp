@@ -122,6 +122,57 @@ TEST_CASE("draws follow their distribution function (Kolmogorov-Smirnov) [law]")
     }
 }
 
+TEST_CASE("draws fill cells of equal probability evenly (chi-square) [law]") {
+    constexpr int kDraws = 20000, kCells = 40;
+    const auto chi_square = [](const std::vector<int>& counts, const std::vector<double>& shares) {
+        double sum = 0;
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            const double expected = shares[i] * kDraws;
+            sum += (counts[i] - expected) * (counts[i] - expected) / expected;
+        }
+        return sum;
+    };
+    for (const Case& c : cases()) {
+        CAPTURE(c.name);
+        RandomStream stream{.key = 2025, .count = 0};
+        if (!c.cdf) {  // values and weights
+            std::vector<int> counts;
+            std::vector<double> shares;
+            std::vector<double> values;
+            double whole = 0;
+            for (std::size_t i = 0; i < c.parameters.size(); i += 2) {
+                whole += c.parameters[i + 1];
+                if (c.parameters[i + 1] > 0) {
+                    values.push_back(c.parameters[i]);
+                    shares.push_back(c.parameters[i + 1]);
+                }
+            }
+            for (double& share : shares) {
+                share /= whole;
+            }
+            counts.resize(values.size());
+            for (int i = 0; i < kDraws; ++i) {
+                const double x = sample(c.kind, c.parameters, stream);
+                const auto found = std::find(values.begin(), values.end(), x);
+                REQUIRE(found != values.end());  // none of weight 0
+                ++counts[static_cast<std::size_t>(found - values.begin())];
+            }
+            CHECK(chi_square(counts, shares) < 15);  // one degree of freedom: probability 0.0001
+            continue;
+        }
+        std::vector<int> counts(kCells);
+        for (int i = 0; i < kDraws; ++i) {
+            const double f = c.cdf(sample(c.kind, c.parameters, stream));
+            ++counts[static_cast<std::size_t>(
+                std::clamp(static_cast<int>(f * kCells), 0, kCells - 1))];
+        }
+        // 39 degrees of freedom: below 12 or above 83 each with a probability below 0.0001
+        const double sum = chi_square(counts, std::vector<double>(kCells, 1.0 / kCells));
+        CHECK(sum < 83);
+        CHECK(sum > 12);
+    }
+}
+
 TEST_CASE("mean and variance of draws are those of the moments, all within the support [law]") {
     constexpr int kDraws = 100000;
     for (const Case& c : cases()) {

@@ -9,6 +9,7 @@ import io
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -137,6 +138,130 @@ class Sweep(unittest.TestCase):
         told = [p.communicate(timeout=120)[0] for p in processes]
         self.assertEqual([bool(t) for t in told], [True, False, False])
         self.assertEqual(self.table("mpi.csv"), whole)
+
+    def test_measures_that_the_scene_declares(self):
+        (self.path / "declared.pup").write_text(SHOP.replace("}\nuse shop", """  measure wait "time in the queue" mean of time in queue
+  measure sojourn mean of time from arrive to leave
+  measure slow percentile 90 of time from arrive to leave
+  measure busy share of #chair > 0
+  measure served count of leave
+}
+use shop""").replace("8 h", "400 h"))
+        rows = self.rows("--replications", 30, "--warm-up", "20h", "--level", "99.9%", scene="declared.pup")
+        by_name = {r["measure"]: r for r in rows}
+        self.assertEqual(list(by_name), ["shop." + m for m in ("wait", "sojourn", "slow", "busy", "served")])
+        # M/M/1 with rho = 1/2 and a service of 360 s: the sojourn is exponential with mean 720 s
+        for name, truth in (("wait", 360), ("sojourn", 720), ("slow", 720 * 2.302585), ("busy", 0.5)):
+            row = by_name["shop." + name]
+            self.assertLess(abs(float(row["mean"]) - truth), float(row["half_width"]), name)
+            self.assertLess(float(row["half_width"]), 0.2 * truth, name)
+        # One run, and the chain solved
+        done = subprocess.run([PROGRAM, "run", "declared.pup", "--json"], cwd=self.path, capture_output=True, text=True,
+                              timeout=60)
+        measures = json.loads(done.stdout)["measures"]
+        self.assertEqual(measures["shop.wait"]["caption"], "time in the queue")
+        self.assertGreater(measures["shop.served"]["value"], 1000)
+        self.assertIn("replications", by_name["shop.wait"])
+        text = subprocess.run([PROGRAM, "run", "declared.pup"], cwd=self.path, capture_output=True, text=True, timeout=60)
+        self.assertIn("time in the queue", text.stdout)
+
+    def test_what_was_never_seen_has_no_mean(self):
+        (self.path / "rare.pup").write_text(SHOP.replace("}\nuse shop", "  measure wait mean of time in queue\n}\nuse shop")
+                                            .replace("8 h", "5 min"))
+        row, = self.rows("--replications", 200, scene="rare.pup")
+        # Somebody is served within 5 minutes, with arrivals every 12, in 34 % of the runs
+        self.assertTrue(40 < int(row["replications"]) < 100, row)
+        (self.path / "never.pup").write_text((self.path / "rare.pup").read_text().replace("5 min", "1 ms"))
+        row, = self.rows("--replications", 5, scene="never.pup")
+        self.assertEqual((row["replications"], row["mean"]), ("0", ""))
+        self.assertIn("-", self.sweep("--replications", 5, "--all", scene="never.pup").stdout)
+
+    def test_one_long_run_in_batches(self):
+        row, = self.rows("--for", "20000h", "--warm-up", "auto", "--batches", "auto", "--measure", "shop.queue.stay",
+                         "--level", "99.9%")
+        self.assertGreaterEqual(int(row["replications"]), 16)
+        self.assertLess(abs(float(row["mean"]) - 360), float(row["half_width"]))
+        self.assertLess(float(row["half_width"]), 40)
+        row, = self.rows("--for", "200h", "--batches", 20, "--measure", "shop.chair.busy", "--until-half-width", "3%")
+        self.assertGreater(int(row["replications"]), 20)
+        self.assertLessEqual(float(row["half_width"]), 0.03 * float(row["mean"]))
+        done = self.sweep("--for", "40h", "--vary", "shop.service=13 min, 14 min", "--warm-up", "auto", "--measure",
+                          "shop.queue.tokens", code=1)
+        self.assertIn("not-settled", done.stderr)  # a queue that grows
+        self.assertIn("--batches", self.sweep("--batches", "1", code=2).stderr)
+        self.assertIn("--batches", self.sweep("--batches", "10", "--replications", "10", code=2).stderr)
+
+    def test_logs_are_compared_and_replayed(self):
+        def tool(*arguments, code):
+            done = subprocess.run([PROGRAM, *arguments], cwd=self.path, capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+            return done.stdout + done.stderr
+        for seed in (3, 4):
+            tool("run", "shop.pup", "--seed", str(seed), "--log", f"{seed}.csv", code=0)
+        self.assertIn("the same", tool("compare", "3.csv", "3.csv", code=0))
+        self.assertIn("the same", tool("compare", "3.csv", "shop.pup", code=0))
+        told = tool("compare", "3.csv", "4.csv", "--on", "shop.pup", code=1)
+        self.assertIn("shop.arrive", told)
+        self.assertIn("the net can do all of it", tool("replay", "shop.pup", "3.csv", code=0))
+        # Cut: three lines, then one that cannot be
+        lines = (self.path / "3.csv").read_text().splitlines()
+        changed = lines[:4] + [lines[4].rsplit(",", 1)[0] + ",shop.leave"] * 2
+        (self.path / "broken.csv").write_text("\n".join(changed) + "\n")
+        one = json.loads(tool("compare", "3.csv", "broken.csv", "--json", "--on", "shop.pup", code=1))
+        self.assertIn(one["common"], (3, 4))
+        told = tool("replay", "shop.pup", "broken.csv", code=1)
+        self.assertIn("broken.csv:", told)
+        self.assertIn("shop.chair", told)
+        # From a till: other names, seconds with two digits, no head line, services not logged
+        till = [f"{int(t) / 705600000:.2f};{'in' if name.endswith('arrive') else 'paid'};-"
+                for t, _, name in (line.split(",") for line in lines[1:]) if not name.endswith("serve")]
+        (self.path / "till.csv").write_text("\n".join(till) + "\n")
+        names = ("--map", "in=shop.arrive", "--map", "paid=shop.leave")
+        self.assertIn("help", tool("replay", "shop.pup", "till.csv", code=2))
+        self.assertIn("leaves out", tool("replay", "shop.pup", "till.csv", *names, "--unlogged", "--tolerance", "10ms", code=0))
+        till.insert(0, "0.00;paid;-")
+        (self.path / "till.csv").write_text("\n".join(till) + "\n")
+        self.assertIn("till.csv:1", tool("replay", "shop.pup", "till.csv", *names, "--unlogged", "--tolerance", "10ms", code=1))
+
+    def test_under_mpirun_the_numbers_are_those_of_one_process(self):
+        """Open MPI itself; the program is not linked with it and finds its rank in the environment."""
+        if shutil.which("mpirun") is None:
+            self.skipTest("skipped: there is no mpirun")
+        for arguments in (["--replications", 31, "--measure", "shop.queue.stay"],
+                          ["--until-half-width", "20%", "--replications", 31, "--measure", "shop.queue.stay",
+                           "--vary", "shop.barbers=1..2"],
+                          ["--batches", 12, "--warm-up", "1h", "--vary", "shop.barbers=1..2", "--measure", "shop.chair.busy"]):
+            whole = self.rows(*arguments)
+            for ranks in (1, 2, 3):
+                name = f"mpi-{ranks}.csv"
+                journal = f"mpi-{ranks}-{len(arguments)}"
+                done = subprocess.run(
+                    ["mpirun", "--oversubscribe", "--bind-to", "none", *(["--allow-run-as-root"] if os.getuid() == 0 else []),
+                     "-n", str(ranks), PROGRAM, "sweep", "shop.pup", *map(str, arguments), "--threads", "1",
+                     "--journal", journal, "--csv", name], cwd=self.path, capture_output=True, text=True, timeout=300)
+                if done.returncode != 0 and "puppetri" not in done.stderr and "error:" not in done.stderr:
+                    self.skipTest("skipped: mpirun starts nothing here: " + done.stderr[:200])
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(self.table(name), whole)
+
+    def test_as_a_slurm_array_the_numbers_are_those_of_one_process(self):
+        if shutil.which("sbatch") is None:
+            self.skipTest("skipped: there is no sbatch")
+        try:
+            up = subprocess.run(["sinfo", "-h", "-o", "%T"], capture_output=True, text=True, timeout=10)
+        except subprocess.TimeoutExpired:
+            self.skipTest("skipped: Slurm does not answer")
+        if up.returncode != 0 or not any(w in up.stdout for w in ("idle", "mixed", "allocated")):
+            self.skipTest("skipped: no Slurm node is up")
+        arguments = ["--replications", 31, "--measure", "shop.queue.stay"]
+        whole = self.rows(*arguments)
+        command = " ".join([PROGRAM, "sweep", "shop.pup", *map(str, arguments), "--threads", "1", "--journal", "slurm",
+                            "--csv", "slurm.csv"])
+        done = subprocess.run(["sbatch", "--wait", "--array=1-3", "--output", str(self.path / "slurm-%a.txt"), "--chdir",
+                               str(self.path), "--wrap", command], cwd=self.path, capture_output=True, text=True,
+                              timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.table("slurm.csv"), whole)
 
     def test_a_failing_run_is_told_with_its_seed_and_the_others_go_on(self):
         (self.path / "fragile.pup").write_text("""scene "Counts to twenty"

@@ -53,6 +53,7 @@ class Dump {
     void add(const Parameter& p) { item("param", p.name, p.type, p.default_value); }
     void add(const InitialTokens& t) { item("tokens", t.count, t.attributes, t.ready); }
     void add(const Arc& a) { item("arc", static_cast<int>(a.kind), a.weight, a.place, a.pattern); }
+    void add(const Moment& m) { item("moment", m.transition, m.key); }
     void add(const Property& p) { item("property", p.name, p.values, p.has_children, p.children); }
     void add(const Expr& e) {
         item("expr", static_cast<int>(e.kind), static_cast<int>(e.op),
@@ -111,6 +112,10 @@ class Dump {
         }
         for (const Question& q : b.questions) {
             item("question", q.name, q.caption, static_cast<int>(q.kind), q.about);
+        }
+        for (const Measure& m : b.measures) {
+            item("measure", m.name, m.caption, m.statistic, m.percent, static_cast<int>(m.seen),
+                 m.value, m.place, m.from, m.to, m.above);
         }
         for (const End& e : b.ends) {
             item("end", e.formulas);

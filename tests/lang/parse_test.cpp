@@ -304,6 +304,38 @@ TEST_CASE("questions have forms [unit]") {
     CHECK(net.body.places.size() == 2);
 }
 
+TEST_CASE("measures have a statistic and something that is seen [unit]") {
+    const auto measure = [](const std::string& text) {
+        File file = parsed("measure m " + text);
+        REQUIRE(file.body.measures.size() == 1);
+        return std::move(file.body.measures[0]);
+    };
+    const Measure state = measure("\"who waits\" mean of #queue + 2 * #chair");
+    CHECK(state.statistic.text == "mean");
+    CHECK(state.caption.text == "who waits");
+    CHECK(state.seen == Seen::kExpr);
+    CHECK(to_text(state.value) == "#queue + 2*#chair");
+    const Measure at = measure("share of kind = vip at leave or lose");
+    CHECK(to_text(at.value) == "kind = vip");
+    REQUIRE(at.from.size() == 2);
+    CHECK(to_text(at.from[1].transition) == "lose");
+    const Measure stay = measure("percentile 97.5 of time in shop.queue");
+    CHECK(stay.seen == Seen::kStay);
+    CHECK(stay.percent.number.numerator == 195);
+    CHECK(to_text(stay.place) == "shop.queue");
+    const Measure late = measure("share of time from arrive(next) to leave(n) or lose(n) > 5 min");
+    CHECK(late.seen == Seen::kPassage);
+    CHECK(to_text(late.from[0].key) == "next");
+    REQUIRE(late.to.size() == 2);
+    CHECK(to_text(late.to[1].transition) == "lose");
+    CHECK(to_text(late.above) == "5 min");
+    CHECK(to_text(measure("count of leave or lose").value) == "leave or lose");
+    // The words stay names elsewhere
+    const Net net = in_net("place measure\nplace time\nmeasure: time -> measure");
+    CHECK(net.body.places.size() == 2);
+    CHECK(measure("mean of time").seen == Seen::kExpr);
+}
+
 TEST_CASE("keywords are keywords only where they can be [unit]") {
     const Net net = in_net(
         "place place\nplace takes takes 2 s\nplace now\nplace live\nwhen: now + takes -> "

@@ -10,12 +10,9 @@ namespace puppetri::sim {
 namespace {
 
 double measured(const net::Net& net, const Metric& metric, SimTime until, SimTime from = {}) {
-    run::Player player(net);
     Meter meter(net, {&metric, 1}, {.from = from});
-    meter.begin(player);
-    while (player.step({.until = until}) == run::Stop::kNone) {
-        meter.fired(player);
-    }
+    run::Player player(net, {.observer = &meter});
+    player.run({.until = until});
     double value = -1;
     meter.finish(until, {&value, 1});
     return value;

@@ -246,6 +246,33 @@ struct Question {
     Span span;
 };
 
+// A firing of a transition, and in (...) to which passage it belongs.
+struct Moment {
+    Path transition;
+    Expr key;
+    Span span;
+};
+
+enum class Seen : std::uint8_t {
+    kExpr,    // EXPR, or EXPR at TRANSITION or ...
+    kStay,    // time in PLACE
+    kPassage  // time from TRANSITION or ... to TRANSITION or ...
+};
+
+// measure NAME "caption" STATISTIC of WHAT [> TIME]
+struct Measure {
+    Name name;
+    Caption caption;
+    Name statistic;  // mean, most, least, total, final, share, percentile, count, rate
+    Expr percent;    // of percentile
+    Seen seen = Seen::kExpr;
+    Expr value;                    // kExpr; of count and rate transitions joined by `or`
+    Path place;                    // kStay
+    std::vector<Moment> from, to;  // kPassage; `from` of kExpr: at
+    Expr above;                    // of share of times
+    Span span;
+};
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Blocks: every other kind, parsed alike and given meaning by whoever knows the kind
 
@@ -297,6 +324,7 @@ struct Body {
     std::vector<Use> uses;
     std::vector<Rule> rules;
     std::vector<Question> questions;
+    std::vector<Measure> measures;
     std::vector<End> ends;
     std::vector<For> loops;
     std::vector<Net> nets;

@@ -17,6 +17,7 @@
 #include "puppetri/net/formula.h"
 #include "puppetri/net/host.h"
 #include "puppetri/net/indices.h"
+#include "puppetri/net/measure.h"
 
 namespace puppetri::net {
 
@@ -259,6 +260,7 @@ struct NetDraft {
     std::vector<NamedState> states;
     std::vector<Rule> rules;
     std::vector<TimeQuestion> questions;
+    std::vector<MeasureDraft> measures;
     std::vector<FinalMarkingDraft> finals;
 };
 

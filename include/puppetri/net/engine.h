@@ -28,6 +28,13 @@ class EngineListener {
     virtual void fired(SimTime at, TransitionIndex t) = 0;
     virtual void occurs(SimTime at, EventIndex e) = 0;
     virtual void lost(SimTime at, EventIndex e) = 0;
+    // For those who measure. A transition fires: nothing has moved yet, `before` reads the state
+    // and the variables that its arcs have bound (SlotKind).
+    virtual void fires(SimTime /*at*/, TransitionIndex /*t*/, const Code::Reader& /*before*/) {}
+    // A token of a timed place without records arrives, to be ready at that time.
+    virtual void arrives(SimTime /*at*/, PlaceIndex /*p*/, SimTime /*ready*/) {}
+    // A token of a place with records is taken.
+    virtual void leaves(SimTime /*at*/, PlaceIndex /*p*/, SimTime /*arrived*/) {}
 };
 
 struct EngineOptions {

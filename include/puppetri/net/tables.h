@@ -208,6 +208,13 @@ struct NetTables {
         std::vector<ProgramIndex> programs;  // of its expressions
     };
     std::vector<FinalMarking> finals;
+    // Of declarations.measures, in a code of their own: measuring changes no net.
+    struct MeasurePrograms {
+        ProgramIndex value;
+        std::vector<ProgramIndex> from, to;
+    };
+    std::vector<MeasurePrograms> measures;
+    Code measure_code;
     Diagnostics notes;
     std::uint64_t hash = 0;
     bool paced = false;

@@ -103,6 +103,14 @@ void each_expr(NetDraft& net, F&& f) {
         each_expr(c, f);
     }
     each_formula(net, [&](Formula& formula) { each_expr(formula, f); });
+    for (MeasureDraft& m : net.measures) {
+        f(m.value);
+        for (std::vector<Moment>* list : {&m.from, &m.to}) {
+            for (Moment& moment : *list) {
+                f(moment.value);
+            }
+        }
+    }
 }
 
 inline bool speaks_of_place(FormulaOp op) {
@@ -148,6 +156,11 @@ void each_place_mention(NetDraft& net, F&& f) {
             }
         }
     }
+    for (MeasureDraft& m : net.measures) {
+        if (m.seen == Seen::kStays) {
+            f(m.place.value);
+        }
+    }
     each_formula(net, [&](Formula& formula) {
         for (Formula::Node& n : formula.nodes) {
             if (speaks_of_place(n.op)) {
@@ -176,6 +189,13 @@ void each_transition_mention(NetDraft& net, F&& f) {
     for (Rule& r : net.rules) {
         for (TransitionIndex& t : r.transitions) {
             f(t.value);
+        }
+    }
+    for (MeasureDraft& m : net.measures) {
+        for (std::vector<Moment>* list : {&m.from, &m.to}) {
+            for (Moment& moment : *list) {
+                f(moment.transition.value);
+            }
         }
     }
     each_formula(net, [&](Formula& formula) {

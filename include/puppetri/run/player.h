@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "puppetri/base/diagnostic.h"
+#include "puppetri/base/expr.h"
 #include "puppetri/base/result.h"
 #include "puppetri/base/time.h"
 #include "puppetri/net/chooser.h"
@@ -29,6 +30,39 @@ class LogSink {
     virtual void lost(SimTime /*at*/, net::EventIndex /*event*/) {}
     // An occurrence is being offered.
     virtual void occurs(SimTime /*at*/, net::EventIndex /*event*/) {}
+};
+
+class Player;
+
+// Who follows a run to measure it. Called in order; must not change the player.
+class Observer {
+ public:
+    // What it wants to hear of; asked once per player.
+    struct Wants {
+        bool instants = false;  // passed(), which costs a look at each instant
+        bool insides = false;   // fires(), arrives(), leaves()
+    };
+    virtual ~Observer() = default;
+    virtual Wants wants() const = 0;
+
+    // A run is being set up: whatever was seen before is another run's.
+    virtual void prepare() = 0;
+    // The initial marking, at time 0.
+    virtual void begins(const Player& player) = 0;
+    // One firing has just been made.
+    virtual void fired(const Player& player) = 0;
+    // An instant has come in which nothing fired: tokens have become ready, events have been lost.
+    virtual void passed(const Player& /*player*/) {}
+
+    // A transition is about to fire: `before` reads the state before (net::SlotKind), and the
+    // variables that its arcs have bound.
+    virtual void fires(SimTime /*at*/, net::TransitionIndex /*t*/, const Code::Reader& /*before*/) {
+    }
+    // A token of a timed place without records arrives, to be ready at that time; also before
+    // begins().
+    virtual void arrives(SimTime /*at*/, net::PlaceIndex /*p*/, SimTime /*ready*/) {}
+    // A token of a place with records is taken.
+    virtual void leaves(SimTime /*at*/, net::PlaceIndex /*p*/, SimTime /*arrived*/) {}
 };
 
 // Something that the outside makes happen. The outside makes events occur, never tokens.
@@ -62,6 +96,7 @@ struct Options {
     net::MovementHost* host = nullptr;            // for places with actions; outlives the player
     net::Chooser* chooser = nullptr;              // nullptr: random; outlives the player
     LogSink* sink = nullptr;                      // outlives the player
+    Observer* observer = nullptr;                 // outlives the player
     SimTime beat = {kTicksPerSecond};             // of paced nets
     std::uint32_t firings_per_instant = 100'000;  // after these the run stops and names the cycle
     bool antithetic = false;                      // net::EngineOptions::antithetic

@@ -21,6 +21,7 @@ struct PerformOptions {
     Horizon horizon;                        // instead of the scene's, where given
     std::vector<run::OutsideEvent> events;  // beside those that the scene schedules
     run::LogSink* sink = nullptr;           // hears of every firing
+    run::Observer* observer = nullptr;      // measures
     // The answers to all choices, as a witness or a recorded session has them; when they are used
     // up, the first option, or what the stream says. Left out: chance decides, from the seed.
     std::optional<std::vector<std::int64_t>> script;

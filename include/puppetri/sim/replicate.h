@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,6 +74,8 @@ struct Plan {
     // One of several processes, each with its share of the numbers (pairs stay together), that tell
     // each other by their journals.
     unsigned rank = 0, ranks = 1;
+    // All numbers are the share of this one (batches of one run), in their order.
+    std::optional<unsigned> owner;
 };
 
 struct Failure {
@@ -86,10 +89,12 @@ struct Outcome {
     std::vector<std::uint64_t> numbers;
     std::vector<double> values;
     std::vector<Failure> failures;  // in order of number; left out of all means
-    std::vector<Confidence> means;  // per column
-    bool interrupted = false;       // go_on said so
-    bool missing = false;           // shares of other processes are not there yet
-    bool precise_enough = true;     // false: at_most came first
+    // Per column: of the replications that have a number there. One that has none (a mean wait
+    // where nobody waited) is NaN in `values`; a mean of none is NaN.
+    std::vector<Confidence> means;
+    bool interrupted = false;    // go_on said so
+    bool missing = false;        // shares of other processes are not there yet
+    bool precise_enough = true;  // false: at_most came first
 
     std::span<const double> row(std::size_t i) const {
         return std::span(values).subspan(i * std::size_t{width}, width);
