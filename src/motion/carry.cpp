@@ -21,16 +21,16 @@ Vec3 sway(double at_s) {
 class Carry final : public Movement {
  public:
     Carry(const MotionContext& given, const CarrySpec& spec)
-        : figure_(given.figure), radius_m_(spec.radius_m), held_(spec.held) {
+        : figure_(given.figure), grip_(spec.grip), held_(spec.held) {
         const MotionContext context = arms_in_chest_space(given);
         // Hands that have opened come back to what they still have.
-        held_ = held_ && hands_hold(context, radius_m_);
+        held_ = held_ && hands_hold(context, grip_);
         limbs = kBothArms;
         duration = duration_of(context, spec.duration_s);
         at_s_ = context.at.seconds();
-        rest_ = carried_ball_chest(figure_, radius_m_);
+        rest_ = carried_ball_chest(figure_, grip_);
         if (held_) {
-            const HeldBall ball = held_ball(context, radius_m_);
+            const HeldBall ball = held_ball(context, grip_);
             if (spec.stay) {
                 rest_ = ball.chest_from_ball;
                 rest_.translation = rest_.translation - sway(at_s_);
@@ -39,18 +39,18 @@ class Carry final : public Movement {
             const Vec3 own_velocity = (sway(at_s_ + h) - sway(at_s_)) * (1 / h);
             plan_swing(ball, own_velocity);
             Controls on_ball = context.now;
-            lay_hands(figure_, ball.chest_from_ball, radius_m_, 0, on_ball);
+            lay_hands(figure_, ball.chest_from_ball, grip_, 0, on_ball);
             offsets_ = fading_fingers(context, on_ball, kBlend_s);
         } else {
             offsets_ = ArmOffsets::make(
                 context,
-                [this](double t, Controls& out) { lay_hands(figure_, own(t), radius_m_, 0, out); },
+                [this](double t, Controls& out) { lay_hands(figure_, own(t), grip_, 0, out); },
                 kBlend_s);
         }
     }
 
     void sample(double t_s, Controls& out) const override {
-        lay_hands(figure_, chest_from_ball(t_s), radius_m_, 0, out);
+        lay_hands(figure_, chest_from_ball(t_s), grip_, 0, out);
         offsets_.apply(t_s, out);
     }
 
@@ -72,8 +72,7 @@ class Carry final : public Movement {
     // The middle of the wrists swings about the middle of the shoulders; the ball goes with it.
     void plan_swing(const HeldBall& ball, Vec3 own_velocity) {
         for (const Side side : {Side::kLeft, Side::kRight}) {
-            wrists_ball_ =
-                wrists_ball_ + ball_from_hand(figure_, side, radius_m_).translation * 0.5;
+            wrists_ball_ = wrists_ball_ + ball_from_hand(figure_, side, grip_).translation * 0.5;
         }
         const auto wrists = [&](const Transform& t) {
             return Transform{t.rotation, t * wrists_ball_};
@@ -97,7 +96,8 @@ class Carry final : public Movement {
     }
 
     const figure::Figure& figure_;
-    double radius_m_, at_s_ = 0;
+    Grip grip_;
+    double at_s_ = 0;
     bool held_;
     Transform rest_;
     SwingingArm swing_;
@@ -108,11 +108,11 @@ class Carry final : public Movement {
 
 }  // namespace
 
-Transform carried_ball_chest(const figure::Figure& figure, double radius_m) {
+Transform carried_ball_chest(const figure::Figure& figure, const Grip& grip) {
     const double h = figure.reach_height_m;
     const Vec3 shoulder = shoulder_chest(figure, Side::kLeft);
-    const Vec3 place{0, shoulder.y - 0.165 * h, shoulder.z + 0.11 * h + radius_m};
-    return {about_x(easy_pitch(figure, place, radius_m)), place};
+    const Vec3 place{0, shoulder.y - 0.165 * h, shoulder.z + 0.11 * h + grip.ahead_m};
+    return {about_x(easy_pitch(figure, place, grip)), place};
 }
 
 MovementPtr make_carry(const MotionContext& context, const CarrySpec& spec) {

@@ -26,13 +26,12 @@ double smooth(double x) {
 
 // The orientation in which hands wait for a ball at a point of the world.
 Quat waiting_rotation(const figure::Figure& figure, const Controls& controls, Vec3 point_world,
-                      double radius_m) {
+                      const Grip& grip) {
     const Transform chest = world_from_chest(figure, controls);
     const Vec3 ahead = rotate(chest.rotation, {0, 0, 1});
     const double level = std::sqrt(ahead.x * ahead.x + ahead.z * ahead.z);
     return about_y(heading_of(ahead)) *
-           about_x(easy_pitch(figure, inverse(chest) * point_world, radius_m) +
-                   atan2(-ahead.y, level));
+           about_x(easy_pitch(figure, inverse(chest) * point_world, grip) + atan2(-ahead.y, level));
 }
 
 Vec3 sway(double at_s) {
@@ -42,7 +41,7 @@ Vec3 sway(double at_s) {
 class Readiness final : public Movement {
  public:
     Readiness(const MotionContext& given, const ReadySpec& spec, Vec3& catches_at)
-        : figure_(given.figure), radius_m_(spec.radius_m), at_s_(given.at.seconds()) {
+        : figure_(given.figure), grip_(spec.grip), at_s_(given.at.seconds()) {
         const MotionContext context = arms_in_chest_space(given);
         limbs = kAllLimbs;
         duration = duration_of(context, spec.duration_s);
@@ -63,7 +62,7 @@ class Readiness final : public Movement {
         Controls then = context.now;
         body(end_s_, then);
         catches_at_ = catches_at = catching_point(figure_, then);
-        rotation_ = waiting_rotation(figure_, then, catches_at_, radius_m_);
+        rotation_ = waiting_rotation(figure_, then, catches_at_, grip_);
         chest_from_ball_ =
             inverse(world_from_chest(figure_, then)) * Transform{rotation_, catches_at_};
         plan_arms(context);
@@ -90,7 +89,7 @@ class Readiness final : public Movement {
     // Hands that are fast, as after a throw, swing on about the shoulders; others come straight.
     void plan_arms(const MotionContext& context) {
         Controls end = context.now;
-        lay_hands(figure_, chest_from_ball_, radius_m_, kOpen_m, end);
+        lay_hands(figure_, chest_from_ball_, grip_, kOpen_m, end);
         for (int i = 0; i < 2; ++i) {
             target_[i] = end.arms[i].chest_from_hand;
             swings_ = swings_ || length(context.rate.arms[i].hand_velocity_chest) > kFastHand_m_s;
@@ -120,11 +119,12 @@ class Readiness final : public Movement {
                                 Transform{rotation_, catches_at_ + sway(at_s_ + t_s) * w};
         const Transform at{slerp(chest_from_ball_.rotation, fixed.rotation, w),
                            lerp(chest_from_ball_.translation, fixed.translation, w)};
-        lay_hands(figure_, at, radius_m_, kOpen_m, out);
+        lay_hands(figure_, at, grip_, kOpen_m, out);
     }
 
     const figure::Figure& figure_;
-    double radius_m_, at_s_, end_s_ = 0;
+    Grip grip_;
+    double at_s_, end_s_ = 0;
     MovementPtr base_;
     BodyAccent accent_;
     Vec3 catches_at_;
@@ -142,7 +142,7 @@ class Receive final : public Movement {
         : figure_(given.figure),
           base_(spec.base),
           base_age_s_(spec.base_age_s),
-          radius_m_(spec.flight.radius_m) {
+          grip_(ball_grip(spec.flight.radius_m)) {
         const MotionContext context = arms_in_chest_space(given);
         const Flight& flight = spec.flight;
         limbs = kAllLimbs;
@@ -161,7 +161,7 @@ class Receive final : public Movement {
         gap_ = Curve1({{0, {kOpen_m, 0, 0}}, {meet, {kOpen_m + 0.01 * part, 0, 0}}, {end, {}}});
         Controls then = context.now;
         base_->sample(base_age_s_ + end, then);
-        rotation_ = waiting_rotation(figure_, then, meeting_, radius_m_);
+        rotation_ = waiting_rotation(figure_, then, meeting_, grip_);
         offsets_ = ArmOffsets::make(
             context, [this](double t, Controls& out) { own(t, out); }, 0.8 * end);
     }
@@ -175,13 +175,14 @@ class Receive final : public Movement {
     void own(double t_s, Controls& out) const {
         base_->sample(base_age_s_ + t_s, out);
         const Transform ball{rotation_, meeting_ + direction_ * way_.at(t_s).position};
-        lay_hands(figure_, inverse(world_from_chest(figure_, out)) * ball, radius_m_,
+        lay_hands(figure_, inverse(world_from_chest(figure_, out)) * ball, grip_,
                   gap_.at(t_s).position, out);
     }
 
     const figure::Figure& figure_;
     MovementPtr base_;
-    double base_age_s_, radius_m_;
+    double base_age_s_;
+    Grip grip_;
     Vec3 meeting_, direction_;
     Quat rotation_;
     Curve1 way_, gap_;
@@ -199,7 +200,7 @@ class Catch final : public Movement {
         fitted.duration = duration;
         base_ = make_idle(
             fitted, {.limbs = without(kAllLimbs, kBothArms), .duration_s = duration.seconds()});
-        arms_ = make_carry(fitted, {.radius_m = spec.radius_m, .held = spec.held});
+        arms_ = make_carry(fitted, {.grip = spec.grip, .held = spec.held});
         phases = base_->phases;
         events.insert(events.end(), base_->events.begin(), base_->events.end());
         const double h = context.figure.height_m;

@@ -18,38 +18,49 @@ constexpr double kElbowOut_rad = -0.2;
 double sign(Side side) { return side == Side::kLeft ? 1 : -1; }
 
 // Unit vector from the centre to the palm.
-Vec3 outward(Side side) { return {sign(side) * cos(kUnder_rad), -sin(kUnder_rad), 0}; }
+Vec3 outward(Side side, bool flat) {
+    return flat ? Vec3{sign(side), 0, 0} : Vec3{sign(side) * cos(kUnder_rad), -sin(kUnder_rad), 0};
+}
 
 // The hand's rotation in ball space: fingers along +Z, the palm's normal towards the centre.
-Quat hand_rotation(Side side) {
+Quat hand_rotation(Side side, bool flat) {
     const Vec3 fingers{0, 0, 1};
-    const Vec3 back_of_hand = outward(side);  // +Y of the hand, whose palm faces -Y
+    const Vec3 back_of_hand = outward(side, flat);  // +Y of the hand, whose palm faces -Y
     const Vec3 x = fingers * sign(side);  // fingers point to +X of a left hand, -X of a right one
     return from_basis(x, back_of_hand, cross(x, back_of_hand));
 }
 
 }  // namespace
 
-Transform ball_from_hand(const figure::Figure& figure, Side side, double radius_m, double gap_m) {
-    const Quat rotation = hand_rotation(side);
+Grip box_grip(Vec3 size_m, double heading_rad) {
+    // Quarter turns from the box to the hands.
+    const double quarters = std::nearbyint(heading_rad / (kPi / 2));
+    const bool across = std::fabs(std::remainder(quarters, 2)) > 0.5;
+    return {(across ? size_m.z : size_m.x) / 2, (across ? size_m.x : size_m.z) / 2, true,
+            quarters * (kPi / 2)};
+}
+
+Transform ball_from_hand(const figure::Figure& figure, Side side, const Grip& grip, double gap_m) {
+    const Quat rotation = hand_rotation(side, grip.flat);
     const Vec3 palm_hand = figure.arms[index_of(side)].hand_from_palm.translation;
-    return {rotation, outward(side) * (radius_m + gap_m) - rotate(rotation, palm_hand)};
+    return {rotation,
+            outward(side, grip.flat) * (grip.half_m + gap_m) - rotate(rotation, palm_hand)};
 }
 
 Transform ball_between(const figure::Figure& figure, const Transform& left_hand,
-                       const Transform& right_hand, double radius_m) {
-    const Transform left = left_hand * inverse(ball_from_hand(figure, Side::kLeft, radius_m));
-    const Transform right = right_hand * inverse(ball_from_hand(figure, Side::kRight, radius_m));
+                       const Transform& right_hand, const Grip& grip) {
+    const Transform left = left_hand * inverse(ball_from_hand(figure, Side::kLeft, grip));
+    const Transform right = right_hand * inverse(ball_from_hand(figure, Side::kRight, grip));
     return {left.rotation, (left.translation + right.translation) * 0.5};
 }
 
-HeldBall held_ball(const MotionContext& context, double radius_m) {
+HeldBall held_ball(const MotionContext& context, const Grip& grip) {
     const Transform chest_from_world = inverse(world_from_chest(context.figure, context.now));
     const Transform left =
         chest_from_world * world_from_hand(context.figure, context.now, Side::kLeft);
     const Transform right =
         chest_from_world * world_from_hand(context.figure, context.now, Side::kRight);
-    HeldBall held{ball_between(context.figure, left, right, radius_m), {}, {}};
+    HeldBall held{ball_between(context.figure, left, right, grip), {}, {}};
     const auto& left_rate = context.rate.arms[index_of(Side::kLeft)];
     const auto& right_rate = context.rate.arms[index_of(Side::kRight)];
     held.angular_chest = (left_rate.hand_angular_chest + right_rate.hand_angular_chest) * 0.5;
@@ -61,10 +72,10 @@ HeldBall held_ball(const MotionContext& context, double radius_m) {
     return held;
 }
 
-bool hands_hold(const MotionContext& context, double radius_m) {
-    constexpr double kOff_m = 0.015;
+bool hands_hold(const MotionContext& context, const Grip& grip) {
+    constexpr double kOff_m = 5e-6;  // more would be seen as a jump
     Controls laid = context.now;
-    lay_hands(context.figure, held_ball(context, radius_m).chest_from_ball, radius_m, 0, laid);
+    lay_hands(context.figure, held_ball(context, grip).chest_from_ball, grip, 0, laid);
     const Transform chest_from_world = inverse(world_from_chest(context.figure, context.now));
     for (const Side side : {Side::kLeft, Side::kRight}) {
         const Vec3 hand =
@@ -76,12 +87,12 @@ bool hands_hold(const MotionContext& context, double radius_m) {
     return true;
 }
 
-void lay_hands(const figure::Figure& figure, const Transform& chest_from_ball, double radius_m,
+void lay_hands(const figure::Figure& figure, const Transform& chest_from_ball, const Grip& grip,
                double gap_m, Controls& out) {
     for (const Side side : {Side::kLeft, Side::kRight}) {
         ArmControl& arm = out.arms[index_of(side)];
         arm = {};
-        arm.chest_from_hand = chest_from_ball * ball_from_hand(figure, side, radius_m, gap_m);
+        arm.chest_from_hand = chest_from_ball * ball_from_hand(figure, side, grip, gap_m);
         arm.chest_from_hand.rotation = normalized(arm.chest_from_hand.rotation);
         arm.swivel_rad = kElbowOut_rad;
         arm.relaxed = 0;
@@ -89,13 +100,13 @@ void lay_hands(const figure::Figure& figure, const Transform& chest_from_ball, d
     }
 }
 
-double easy_pitch(const figure::Figure& figure, Vec3 ball_chest, double radius_m) {
+double easy_pitch(const figure::Figure& figure, Vec3 ball_chest, const Grip& grip) {
     const figure::Arm& arm = figure.arms[index_of(Side::kLeft)];
     const Vec3 shoulder = shoulder_chest(figure, Side::kLeft);
     double pitch = 0;
     for (int i = 0; i < 8; ++i) {  // the wrist's place depends on the pitch, a little
         const Transform hand =
-            Transform{about_x(pitch), ball_chest} * ball_from_hand(figure, Side::kLeft, radius_m);
+            Transform{about_x(pitch), ball_chest} * ball_from_hand(figure, Side::kLeft, grip);
         const TwoBoneResult bent = solve_two_bone({.start = shoulder,
                                                    .target = hand.translation,
                                                    .pole = {kElbowOut_rad, -1, -0.3},

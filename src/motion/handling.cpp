@@ -8,6 +8,7 @@
 #include "arm_state.h"
 #include "compose.h"
 #include "living.h"
+#include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/arms.h"
 #include "puppetri/motion/grip.h"
@@ -54,6 +55,22 @@ class Stoop final : public PoseSource {
     double part_, scale_, grasp_s_, end_s_;
 };
 
+// The hands' frame at a ball there, for a chest that is where these controls have it.
+Quat hands_at(const figure::Figure& figure, const Controls& c, Vec3 ball_world, const Grip& grip,
+              double roll_rad) {
+    const Transform chest = world_from_chest(figure, c);
+    const Quat pitch = about_x(easy_pitch(figure, inverse(chest) * ball_world, grip));
+    if (!grip.flat) {
+        return normalized(chest.rotation * pitch * about_z(roll_rad));
+    }
+    // Palms flat on two faces of the box: only about the line between them may the hands turn.
+    const Quat hands = chest.rotation * pitch;
+    const Quat box = about_y(grip.yaw_rad);
+    const Vec3 fingers = rotate(conjugate(box), rotate(hands, {0, 0, 1}));
+    return normalized(box * about_x(-puppetri::atan2(fingers.y, std::fmax(fingers.z, 0.1))) *
+                      about_z(roll_rad));
+}
+
 class Take final : public Movement {
  public:
     // `then`: where the trunk is about when the hands close.
@@ -63,7 +80,7 @@ class Take final : public Movement {
         const MotionContext context = arms_in_chest_space(given);
         limbs = kBothArms;
         duration = duration_of(context, spec.grasps_s + spec.brings_s);
-        carried_ = carried_ball_chest(figure_, spec.radius_m);
+        carried_ = carried_ball_chest(figure_, spec.grip);
         offsets_ = ArmOffsets::make(
             context, [this](double t, Controls& out) { own(t, out); }, 0.75 * spec.grasps_s);
     }
@@ -86,7 +103,7 @@ class Take final : public Movement {
         lay_hands(figure_,
                   {slerp(held.rotation, carried_.rotation, brought),
                    lerp(held.translation, carried_.translation, brought) + ahead},
-                  spec_.radius_m, kOpen_m * (1 - closing), out);
+                  spec_.grip, kOpen_m * (1 - closing), out);
         keep_in_reach(smooth_rise(t_s - 0.3 * spec_.grasps_s, 0.7 * spec_.grasps_s), out);
     }
 
@@ -121,13 +138,13 @@ class Give final : public Movement {
         limbs = kBothArms;
         duration = duration_of(context, spec.duration_s);
         events = {{to_time(kHandOver_s), "hand_over", Limb::kPelvis}};
-        from_ = held_ball(context, spec.radius_m).chest_from_ball;
-        const Vec3 ball_chest =
-            inverse(world_from_chest(figure_, context.now)) * spec.meeting_world;
-        world_from_hands_ = {normalized(world_from_chest(figure_, context.now).rotation *
-                                        about_x(easy_pitch(figure_, ball_chest, spec.radius_m)) *
-                                        about_z(kRoll_rad)),
-                             spec.meeting_world};
+        from_ = held_ball(context, spec.grip).chest_from_ball;
+        // A box is held out square to the one who takes it.
+        Grip grip = spec.grip;
+        grip.yaw_rad = heading_of(context.now.pelvis.rotation_world);
+        world_from_hands_ = {
+            hands_at(figure_, context.now, spec.meeting_world, grip, grip.flat ? 0 : kRoll_rad),
+            spec.meeting_world};
         offsets_ = ArmOffsets::make(
             context, [this](double t, Controls& out) { own(t, out); }, 0.5);
     }
@@ -144,7 +161,7 @@ class Give final : public Movement {
         lay_hands(figure_,
                   {slerp(from_.rotation, there.rotation, out_there),
                    lerp(from_.translation, there.translation, out_there)},
-                  spec_.radius_m, kOpen_m * open, out);
+                  spec_.grip, kOpen_m * open, out);
         const double down = smooth_rise(t_s - kHandOver_s - 0.15, 0.85);
         for (const Side side : {Side::kLeft, Side::kRight}) {
             ArmControl& arm = out.arms[index_of(side)];
@@ -165,22 +182,14 @@ class Give final : public Movement {
     ArmOffsets offsets_;
 };
 
-// The hands' frame at a ball there, for a chest that is where these controls have it.
-Quat hands_at(const figure::Figure& figure, const Controls& c, Vec3 ball_world, double radius_m,
-              double roll_rad) {
-    const Transform chest = world_from_chest(figure, c);
-    return normalized(chest.rotation *
-                      about_x(easy_pitch(figure, inverse(chest) * ball_world, radius_m)) *
-                      about_z(roll_rad));
-}
-
-double reach_to(const figure::Figure& figure, const Controls& c, Vec3 ball_world, double radius_m) {
-    const Transform ball{hands_at(figure, c, ball_world, radius_m, 0), ball_world};
+double reach_to(const figure::Figure& figure, const Controls& c, Vec3 ball_world,
+                const Grip& grip) {
+    const Transform ball{hands_at(figure, c, ball_world, grip, 0), ball_world};
     const Transform chest_from_ball = inverse(world_from_chest(figure, c)) * ball;
     double most = 0;
     for (const Side side : {Side::kLeft, Side::kRight}) {
         const figure::Arm& arm = figure.arms[index_of(side)];
-        const Vec3 hand = (chest_from_ball * ball_from_hand(figure, side, radius_m)).translation;
+        const Vec3 hand = (chest_from_ball * ball_from_hand(figure, side, grip)).translation;
         most = std::fmax(most,
                          length(hand - shoulder_chest(figure, side)) / (arm.upper_m + arm.fore_m));
     }
@@ -205,17 +214,17 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
     MovementPtr body;
     Controls low = context.now;
     double reach = 2;
-    for (double part = 0; part < 1.05 && reach > kEasy; part += 0.1) {
+    for (double part = 0; part < 1.35 && reach > kEasy; part += 0.1) {
         body = make_posed(context, posed, std::make_shared<Stoop>(part, scale, grasp_s, own_s));
         body->sample(grasp_s, low);
-        reach = reach_to(figure, low, spec.ball_world, spec.radius_m);
+        reach = reach_to(figure, low, spec.ball_world, spec.grip);
     }
     Vec3 at_world = spec.ball_world;
     if (reach > kFarthest) {  // the hands go towards where it might lie, before the feet
         const Vec3 feet = (low.legs[0].ankle_world + low.legs[1].ankle_world) * 0.5;
         const Vec3 before =
             feet + rotate(about_y(heading_of(low.pelvis.rotation_world)),
-                          {0, spec.radius_m - figure.ankle_height_m, 0.23 * figure.height_m});
+                          {0, spec.grip.half_m - figure.ankle_height_m, 0.23 * figure.height_m});
         const Vec3 shoulders =
             world_from_chest(figure, low) *
             ((shoulder_chest(figure, Side::kLeft) + shoulder_chest(figure, Side::kRight)) * 0.5);
@@ -223,9 +232,9 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
                      far = length(before - shoulders);
         at_world = shoulders + (before - shoulders) * std::fmin(1, 0.8 * arm / far);
     }
-    const Quat hands = hands_at(figure, low, at_world, spec.radius_m, 0);
+    const Quat hands = hands_at(figure, low, at_world, spec.grip, 0);
     auto arms = std::make_shared<Take>(context,
-                                       TakeSpec{.radius_m = spec.radius_m,
+                                       TakeSpec{.grip = spec.grip,
                                                 .ball_world = at_world,
                                                 .grasps_s = grasp_s,
                                                 .brings_s = 0.92 * (own_s - grasp_s)},
@@ -234,7 +243,7 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
     PickUp made;
     made.movement = side_by_side(std::move(body), std::move(arms));
     made.grasps_after = to_time(grasp_s);
-    made.reaches = reach <= kFarthest;
+    made.reaches = reach <= kFarthest && 2 * spec.grip.half_m <= kWidestGrip_m;
     return made;
 }
 
@@ -265,7 +274,7 @@ MovementPtr make_give(const MotionContext& context, const GiveSpec& spec) {
 MovementPtr make_take(const MotionContext& context, const TakeSpec& spec) {
     return std::make_shared<Take>(
         context, spec,
-        hands_at(context.figure, context.now, spec.ball_world, spec.radius_m, spec.roll_rad),
+        hands_at(context.figure, context.now, spec.ball_world, spec.grip, spec.roll_rad),
         context.now);
 }
 

@@ -99,7 +99,7 @@ class Preparer {
     void finish(MovementPtr main);
     Vec3 head_of(ActorIndex actor) const;
     Vec3 place_of(const ArgumentValue& value) const;
-    double radius(PropIndex prop) const { return around_.props[prop.value].radius_m; }
+    const Grip& grip(PropIndex prop) const { return around_.props[prop.value].grip; }
     bool holds(PropIndex prop) const { return prop.valid() && around_.holds == prop; }
     void note(const char* code, const char* message, const char* remedy) {
         notes_.push_back({Severity::kWarning, code, {}, call_.movement, message, remedy});
@@ -148,7 +148,7 @@ LimbSet Preparer::main_limbs() {
         arms_ = prepared.movement;
         result_.prop = prepared.prop;
     } else if (around_.holds.valid()) {
-        arms_ = make_carry(context_, {.radius_m = radius(around_.holds)});
+        arms_ = make_carry(context_, {.grip = grip(around_.holds)});
         result_.prop = around_.holds;
     } else if (length(context_.rate.arms[0].hand_velocity_chest) > kFastHand_m_s ||
                length(context_.rate.arms[1].hand_velocity_chest) > kFastHand_m_s) {
@@ -311,7 +311,7 @@ void Preparer::ready() {
         return;
     }
     Ready made =
-        make_ready(context_, {.radius_m = radius(ball),
+        make_ready(context_, {.grip = grip(ball),
                               .heading_rad = heading,
                               .duration_s = std::fmax(turn_duration_s(std::fabs(by)) + 0.1, 0.4)});
     result_.movement = std::move(made.movement);
@@ -339,8 +339,7 @@ void Preparer::throw_ball() {
         note("not-facing", "it throws without facing the target", "let it face the target first");
     }
     result_.movement = make_throw(
-        context_,
-        {.radius_m = radius(ball), .target_world = target, .held = around_.holds.valid()});
+        context_, {.grip = grip(ball), .target_world = target, .held = around_.holds.valid()});
 }
 
 void Preparer::catch_ball() {
@@ -351,12 +350,12 @@ void Preparer::catch_ball() {
         note("hands-full", "its hands hold another prop", "throw that first");
         result_.movement = side_by_side(make_idle(context_, {.limbs = without(kAllLimbs, kBothArms),
                                                              .duration_s = CatchSpec{}.duration_s}),
-                                        make_carry(context_, {.radius_m = radius(around_.holds)}));
+                                        make_carry(context_, {.grip = grip(around_.holds)}));
         return;
     }
     if (!holds(ball)) {
         const Vec3 hands = world_from_chest(context_.figure, context_.now) *
-                           held_ball(context_, radius(ball)).chest_from_ball.translation;
+                           held_ball(context_, grip(ball)).chest_from_ball.translation;
         const double off = length(hands - around_.props[ball.value].position_world);
         if (off > kCatch_m) {
             note("out-of-reach",
@@ -367,7 +366,7 @@ void Preparer::catch_ball() {
         result_.takes_prop = off <= kCatch_m;
     }
     result_.movement =
-        make_catch(context_, {.radius_m = radius(ball), .held = holds(ball) || result_.takes_prop});
+        make_catch(context_, {.grip = grip(ball), .held = holds(ball) || result_.takes_prop});
 }
 
 void Preparer::own() {
@@ -382,7 +381,7 @@ void Preparer::whole(MovementPtr made) {
     if (carries) {
         note("hands-full", "the arms that it moves hold a prop: they go on carrying it",
              "let it throw the prop or put it down first");
-        arms_ = make_carry(context_, {.radius_m = radius(around_.holds)});
+        arms_ = make_carry(context_, {.grip = grip(around_.holds)});
         result_.prop = around_.holds;
     }
     finish(std::move(made));
@@ -398,8 +397,7 @@ void Preparer::pick_up() {
         stand_for(PickUpSpec{}.duration_s);
         return;
     }
-    PickUp made =
-        make_pick_up(context_, {.radius_m = state.radius_m, .ball_world = state.position_world});
+    PickUp made = make_pick_up(context_, {.grip = state.grip, .ball_world = state.position_world});
     result_.movement = std::move(made.movement);
     if (made.reaches) {
         result_.grasps_after = made.grasps_after;
@@ -432,7 +430,7 @@ void Preparer::hand_over() {
         return;
     }
     result_.movement =
-        make_give(context_, {.radius_m = radius(ball), .meeting_world = meeting.meeting_world});
+        make_give(context_, {.grip = grip(ball), .meeting_world = meeting.meeting_world});
     result_.grasps_after = to_time(kHandOver_s);
     result_.gives_to = *to;
     result_.meeting_world = meeting.meeting_world;
@@ -534,7 +532,7 @@ void Preparer::arm_swing(double sign) {
         note("hands-full", "the arm that shall swing holds a prop",
              "leave both arms to carry(...)");
         result_.movement = make_carry(
-            context_, {.radius_m = radius(around_.holds), .duration_s = ArmSwingSpec{}.duration_s});
+            context_, {.grip = grip(around_.holds), .duration_s = ArmSwingSpec{}.duration_s});
         return;
     }
     result_.movement =
@@ -573,7 +571,7 @@ bool Preparer::hands_full(double duration_s) {
     }
     note("hands-full", "the hand that shall move holds a prop", "throw it first");
     result_.movement =
-        make_carry(context_, {.radius_m = radius(around_.holds), .duration_s = duration_s});
+        make_carry(context_, {.grip = grip(around_.holds), .duration_s = duration_s});
     return true;
 }
 
@@ -637,9 +635,9 @@ void Preparer::carry(bool stay) {
     if (!holds(ball)) {
         note("not-held", "it carries what its hands do not hold", "let it catch the prop first");
     }
-    result_.movement = make_carry(context_, {.radius_m = radius(ball),
-                                             .held = around_.holds.valid(),
-                                             .stay = stay && around_.holds.valid()});
+    result_.movement = make_carry(
+        context_,
+        {.grip = grip(ball), .held = around_.holds.valid(), .stay = stay && around_.holds.valid()});
 }
 
 Prepared Preparer::run() {

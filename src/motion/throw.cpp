@@ -29,11 +29,11 @@ class Throw final : public Movement {
     Throw(const MotionContext& given, const ThrowSpec& spec)
         : figure_(given.figure),
           held_(spec.held),
-          radius_m_(spec.radius_m),
+          grip_(spec.grip),
           target_(spec.target_world),
           flight_s_(spec.flight_s) {
         const MotionContext context = arms_in_chest_space(given);
-        held_ = held_ && hands_hold(context, radius_m_);
+        held_ = held_ && hands_hold(context, grip_);
         limbs = kAllLimbs;
         duration = duration_of(context, spec.duration_s);
         release_s_ = std::fmax(duration.seconds(), 0.05);
@@ -133,8 +133,7 @@ class Throw final : public Movement {
     void plan_arms(const MotionContext& context) {
         const double h = figure_.reach_height_m, r = release_s_;
         for (const Side side : {Side::kLeft, Side::kRight}) {
-            wrists_ball_ =
-                wrists_ball_ + ball_from_hand(figure_, side, radius_m_).translation * 0.5;
+            wrists_ball_ = wrists_ball_ + ball_from_hand(figure_, side, grip_).translation * 0.5;
         }
         const Transform chest = world_from_chest(figure_, context.now);
         const Vec3 spin =
@@ -192,7 +191,7 @@ class Throw final : public Movement {
     // The pitch of hands and ball: in line with the forearms at the start and the low point.
     void plan_hands(const MotionContext& context, double low_s, double end, const Transform& chest,
                     Vec3 spin) {
-        const HeldBall ball = held_ball(context, radius_m_);
+        const HeldBall ball = held_ball(context, grip_);
         const double start = easy_pitch_at(context.now, chest * ball.chest_from_ball.translation);
         Controls low = context.now;
         body(low_s, low);
@@ -216,13 +215,13 @@ class Throw final : public Movement {
             return;
         }
         Controls on_ball = context.now;
-        lay_hands(figure_, ball.chest_from_ball, radius_m_, 0, on_ball);
+        lay_hands(figure_, ball.chest_from_ball, grip_, 0, on_ball);
         offsets_ = fading_fingers(context, on_ball, 0.9 * low_s);
     }
     double easy_pitch_at(const Controls& controls, Vec3 ball_world) const {
         const Transform chest = world_from_chest(figure_, controls);
         const Vec3 chest_ahead = rotate(chest.rotation, {0, 0, 1});
-        return easy_pitch(figure_, inverse(chest) * ball_world, radius_m_) +
+        return easy_pitch(figure_, inverse(chest) * ball_world, grip_) +
                atan2(-chest_ahead.y, dot(chest_ahead, ahead_));
     }
 
@@ -236,7 +235,7 @@ class Throw final : public Movement {
                                          about_x(pitch_.at(t_s).position));
         const Transform world_from_ball{rotation,
                                         wrists_world(t_s, out) - rotate(rotation, wrists_ball_)};
-        lay_hands(figure_, inverse(world_from_chest(figure_, out)) * world_from_ball, radius_m_, 0,
+        lay_hands(figure_, inverse(world_from_chest(figure_, out)) * world_from_ball, grip_, 0,
                   out);
         offsets_.apply(t_s, out);
     }
@@ -258,7 +257,8 @@ class Throw final : public Movement {
 
     const figure::Figure& figure_;
     bool held_;
-    double radius_m_, release_s_ = 0, low_s_ = 0;
+    Grip grip_;
+    double release_s_ = 0, low_s_ = 0;
     Vec3 target_;
     double flight_s_;
     MovementPtr base_, after_;

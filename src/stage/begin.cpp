@@ -44,7 +44,7 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
     PUP_REQUIRE(activity.actor.value < take.actors.size());
     attend(activity.actor, call);
     const MotionContext context = context_of(activity.actor, now, duration);
-    const Seen seen = look_around(now);
+    const Seen seen = look_around(now, activity.actor);
     const motion::Surroundings around{seen.actors, seen.props, seen.sets, activity.actor,
                                       held_by(activity.actor, now)};
     Diagnostics notes;
@@ -73,11 +73,13 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
     if (prepared.takes_prop) {
         PropTimeline& line = take.props[prepared.prop.value];
         const Transform prop = take.world_from_prop(prepared.prop, now, true);
-        const Transform hands = take.between_hands(activity.actor, take.radius(prepared.prop), now);
+        const motion::Grip grip = take.grip(prepared.prop, activity.actor, now, true);
+        const Transform hands = take.between_hands(activity.actor, grip, now);
         line.take({.from = now,
                    .kind = Holding::kHands,
                    .actor = activity.actor,
-                   .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation)});
+                   .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation),
+                   .grip = grip});
     }
     if (prepared.grasps_after.ticks >= 0) {
         const bool gives = prepared.gives_to.valid();
@@ -115,12 +117,17 @@ void Stage::Data::receive_from_hands(const Grasp& grasp, Vec3 meeting_world) {
     const std::uint32_t owner =
         take.actors[grasp.actor.value].timeline.in_charge(Limb::kLeftArm, now).owner;
     constexpr double kRoll_rad = 0.66;  // between the hands of the other
+    const Activity& gives = activities[grasp.activity];
+    motion::Grip offered = take.grip(grasp.prop, gives.actor, now, true);
+    Controls giver;
+    take.actors[gives.actor.value].timeline.sample(now, giver, true);
+    offered.yaw_rad = heading_of(giver.pelvis.rotation_world) + kPi;  // square to it
     take_limbs(grasp.actor, motion::kBothArms,
                motion::make_take(context_of(grasp.actor, now, SimTime{-1}),
-                                 {.radius_m = take.radius(grasp.prop),
+                                 {.grip = offered,
                                   .ball_world = meeting_world,
                                   .grasps_s = (grasp.at - now).seconds(),
-                                  .roll_rad = kRoll_rad}),
+                                  .roll_rad = offered.flat ? 0 : kRoll_rad}),
                owner);
 }
 
@@ -224,7 +231,7 @@ void Stage::Data::attend(ActorIndex thrower, const motion::BoundCall& call) {
     }
     const double by = clamp(turn, -kMost_rad, kMost_rad);  // the rest when the throw begins
     motion::Ready ready =
-        motion::make_ready(context, {.radius_m = take.radius(wait.prop),
+        motion::make_ready(context, {.grip = take.grip(wait.prop, *catcher, now, true),
                                      .heading_rad = faces + by,
                                      .duration_s = std::fmax(0.5, std::fabs(by) / kTurning_rad_s)});
     wait.at_world = ready.catches_at_world;

@@ -6,6 +6,7 @@
 
 #include "puppetri/motion/bound_call.h"
 #include "puppetri/motion/flight.h"
+#include "puppetri/motion/grip.h"
 
 namespace puppetri::stage {
 
@@ -20,6 +21,7 @@ struct Hold {
         {};  // kHands: how it lies between the hands (its spin goes on from catch to catch)
     motion::Side hand = motion::Side::kRight;  // kOneHand
     Transform hand_from_prop = {};             // kOneHand
+    motion::Grip grip = {};                    // kHands
     motion::Flight flight = {};                // kFlight
     Transform lies = {};                       // kFloor
 };

@@ -126,24 +126,33 @@ struct Stage::Data {
         const PropIndex held = initially_held_by(index);
         LimbSet idle = motion::kAllLimbs;
         if (held.valid()) {
-            const double radius = take.radius(held);
-            motion::lay_hands(figure, motion::carried_ball_chest(figure, radius), radius, 0,
+            const motion::Grip grip = first_grip(held);
+            motion::lay_hands(figure, motion::carried_ball_chest(figure, grip), grip, 0,
                               context.now);
             idle = motion::without(idle, motion::kBothArms);
-            made.timeline.take(
-                motion::kBothArms,
-                {SimTime{-1}, SimTime{0}, motion::make_carry(context, {.radius_m = radius})});
+            made.timeline.take(motion::kBothArms, {SimTime{-1}, SimTime{0},
+                                                   motion::make_carry(context, {.grip = grip})});
         }
         made.timeline.take(idle,
                            {SimTime{-1}, SimTime{0}, motion::make_idle(context, {.limbs = idle})});
         take.actors.push_back(std::move(made));
     }
 
+    // Of what is held from the beginning: its X goes from hand to hand.
+    motion::Grip first_grip(PropIndex index) const {
+        const Prop& prop = play.cast.props[index.value];
+        return prop.shape == PropShape::kSphere ? motion::ball_grip(take.radius(index))
+                                                : motion::box_grip(prop.size_m, 0);
+    }
+
     void place_prop(PropIndex index) {
         const Prop& prop = play.cast.props[index.value];
         PropTimeline line;
         if (prop.held_by.valid()) {
-            line.take({.from = SimTime{-1}, .kind = Holding::kHands, .actor = prop.held_by});
+            line.take({.from = SimTime{-1},
+                       .kind = Holding::kHands,
+                       .actor = prop.held_by,
+                       .grip = first_grip(index)});
         } else {
             line.take(
                 {.from = SimTime{-1}, .lies = {about_y(prop.heading_rad), prop.position_world}});
@@ -190,7 +199,7 @@ struct Stage::Data {
         std::vector<motion::PropState> props;
         std::vector<motion::SetState> sets;
     };
-    Seen look_around(SimTime at) const {
+    Seen look_around(SimTime at, ActorIndex me) const {
         Seen seen;
         for (std::uint32_t i = 0; i < take.actors.size(); ++i) {
             motion::ActorState state{take.actors[i].figure.get(), {}, {}};
@@ -205,7 +214,7 @@ struct Stage::Data {
             const bool one_hand = hold.kind == Holding::kOneHand;
             const Transform where = take.world_from_prop(PropIndex{i}, at, true);
             motion::PropState state{
-                where.translation, take.radius(PropIndex{i}),
+                where.translation, take.grip(PropIndex{i}, me, at, true),
                 hold.kind == Holding::kHands || one_hand ? hold.actor : ActorIndex{}};
             if (one_hand) {
                 state.in_hand = hold.hand;
@@ -264,8 +273,9 @@ struct Stage::Data {
             return;
         }
         const Transform prop = take.world_from_prop(grasp.prop, grasp.at, true);
-        const Transform hands = take.between_hands(grasp.actor, take.radius(grasp.prop), grasp.at);
         const Hold& hold = take.props[grasp.prop.value].at(grasp.at);
+        const motion::Grip grip = take.grip(grasp.prop, grasp.actor, activity.start, true);
+        const Transform hands = take.between_hands(grasp.actor, grip, grasp.at);
         const bool other = hold.kind == Holding::kHands && hold.actor != activity.actor;
         if (other || length(prop.translation - hands.translation) > kNear_m) {
             warn(activity.action, "out-of-reach", "the hands close on air: the prop is not there",
@@ -276,7 +286,8 @@ struct Stage::Data {
             {.from = grasp.at,
              .kind = Holding::kHands,
              .actor = grasp.actor,
-             .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation)});
+             .hands_from_prop = normalized(conjugate(hands.rotation) * prop.rotation),
+             .grip = grip});
     }
 
     // One hand that takes a prop, or leaves it where it is. The stage has it exactly as it was: so
@@ -323,7 +334,8 @@ struct Stage::Data {
         if (held.valid() && free.has(Limb::kLeftArm) && free.has(Limb::kRightArm)) {
             free = motion::without(free, motion::kBothArms);
             take_limbs(activity.actor, motion::kBothArms,
-                       motion::make_carry(context, {.radius_m = take.radius(held)}), ~0u);
+                       motion::make_carry(context, {.grip = take.grip(held, activity.actor, now)}),
+                       ~0u);
         }
         if (free.bits != 0) {
             take_limbs(activity.actor, free, motion::make_idle(context, {.limbs = free}), ~0u);

@@ -39,14 +39,33 @@ void Take::pose(ActorIndex actor, SimTime at, figure::Pose& out, bool before) co
     move_driven_joints(actor, at, out);
 }
 
-Transform Take::between_hands(ActorIndex actor, double radius_m, SimTime at, bool before) const {
+motion::Grip Take::grip(PropIndex prop, ActorIndex actor, SimTime at, bool before) const {
+    const Hold& hold = props[prop.value].at(at, before);
+    if (hold.kind == Holding::kHands) {
+        return hold.grip;
+    }
+    const Prop& thing = cast.props[prop.value];
+    if (thing.shape == PropShape::kSphere || !actors[actor.value].figure->humanoid()) {
+        return motion::ball_grip(radius(prop));
+    }
+    motion::Controls controls;
+    actors[actor.value].timeline.sample(at, controls, before);
+    const double lies = hold.kind == Holding::kFloor ? heading_of(hold.lies.rotation) : 0;
+    motion::Grip grip =
+        motion::box_grip(thing.size_m, heading_of(controls.pelvis.rotation_world) - lies);
+    grip.yaw_rad += lies;
+    return grip;
+}
+
+Transform Take::between_hands(ActorIndex actor, const motion::Grip& grip, SimTime at,
+                              bool before) const {
     static thread_local figure::Pose
         pose_of_holder;  // scratch: results never depend on what it holds
     pose(actor, at, pose_of_holder, before);
     const figure::Figure& f = *actors[actor.value].figure;
     return motion::ball_between(
         f, world_from_joint(f.skeleton, pose_of_holder, f.arms[figure::kLeft].hand),
-        world_from_joint(f.skeleton, pose_of_holder, f.arms[figure::kRight].hand), radius_m);
+        world_from_joint(f.skeleton, pose_of_holder, f.arms[figure::kRight].hand), grip);
 }
 
 Transform Take::world_from_hand(ActorIndex actor, motion::Side side, SimTime at,
@@ -68,7 +87,7 @@ Transform Take::world_from_prop(PropIndex prop, SimTime at, bool before) const {
     }
     switch (hold.kind) {
         case Holding::kHands: {
-            Transform t = between_hands(hold.actor, radius(prop), at, before);
+            Transform t = between_hands(hold.actor, hold.grip, at, before);
             t.rotation = normalized(t.rotation * hold.hands_from_prop);
             return t;
         }

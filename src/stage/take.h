@@ -55,7 +55,10 @@ struct Take {
     void drive(const Play& play, std::shared_ptr<const Quantities> from);
     void move_driven_joints(ActorIndex actor, SimTime at, figure::Pose& pose) const;
 
+    // Of the sphere that a prop flies as.
     double radius(PropIndex prop) const { return cast.props[prop.value].size_m.x / 2; }
+    // How it is held at that instant or, where nobody holds it, how this actor would take it.
+    motion::Grip grip(PropIndex prop, ActorIndex actor, SimTime at, bool before = false) const;
 
     // The pose of an actor, with its gaze once the track is made. `before`: just before the
     // instant.
@@ -67,7 +70,7 @@ struct Take {
 
     // The ball that the hands of this actor would hold: its centre, and the left hand's idea of its
     // rotation.
-    Transform between_hands(ActorIndex actor, double radius_m, SimTime at,
+    Transform between_hands(ActorIndex actor, const motion::Grip& grip, SimTime at,
                             bool before = false) const;
 
     // The joint of one hand.

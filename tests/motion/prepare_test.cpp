@@ -35,10 +35,10 @@ struct Scene {
             actors.push_back(
                 {&figure, standing(figure, {x, 0, 0}, i == 0 ? kPi / 2 : -kPi / 2), {}});
         }
-        const Transform ball = carried_ball_chest(figure, kRadius_m);
-        lay_hands(figure, ball, kRadius_m, 0, actors[0].controls);
+        const Transform ball = carried_ball_chest(figure, ball_grip(kRadius_m));
+        lay_hands(figure, ball, ball_grip(kRadius_m), 0, actors[0].controls);
         props.push_back({(world_from_chest(figure, actors[0].controls) * ball).translation,
-                         kRadius_m, ActorIndex{0}});
+                         ball_grip(kRadius_m), ActorIndex{0}});
     }
     MotionContext context(int who, SimTime duration = {-1}) const {
         return {figure,   actors[static_cast<std::size_t>(who)].controls,
@@ -246,7 +246,7 @@ TEST_CASE("the ball stays between the hands whatever movement carries it [law]")
                        right = world_from_palm(scene.figure, c, Side::kRight).translation;
             const Vec3 ball =
                 ball_between(scene.figure, world_from_hand(scene.figure, c, Side::kLeft),
-                             world_from_hand(scene.figure, c, Side::kRight), kRadius_m)
+                             world_from_hand(scene.figure, c, Side::kRight), ball_grip(kRadius_m))
                     .translation;
             CHECK(std::fabs(length(left - ball) - kRadius_m) < 1e-9);
             CHECK(std::fabs(length(right - ball) - kRadius_m) < 1e-9);

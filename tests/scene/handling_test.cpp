@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "measured.h"
+#include "puppetri/math/rotation.h"
 
 using namespace puppetri;
 using namespace puppetri::scene;
@@ -88,6 +89,73 @@ TEST_CASE("a ball is picked up off the floor, handed over, and carried on, witho
     }
 }
 
+TEST_CASE("boxes are picked up, carried and handed over between flat palms [law]") {
+    struct Case {
+        const char* box;
+        Vec3 size;
+        double facing_deg;
+    };
+    const Case cases[] = {{"(0.3, 0.2, 0.25) m", {0.3, 0.2, 0.25}, 0},
+                          {"(0.3, 0.2, 0.25) m", {0.3, 0.2, 0.25}, 90},
+                          {"(0.2, 0.3, 0.4) m", {0.2, 0.3, 0.4}, -25},
+                          {"(0.22, 0.16, 0.6) m", {0.22, 0.16, 0.6}, 10},
+                          {"(0.6, 0.16, 0.22) m", {0.6, 0.16, 0.22}, 100}};
+    for (const Case& c : cases) {
+        CAPTURE(c.box);
+        CAPTURE(c.facing_deg);
+        const double a = c.facing_deg / 57.29577951308232;
+        const auto at_distance = [&](double m, double y) {
+            return "(" + std::to_string(m * std::sin(a)) + ", " + std::to_string(y) + ", " +
+                   std::to_string(m * std::cos(a)) + ") m";
+        };
+        std::string text = kHandling;
+        const auto put = [&](const std::string& from, const std::string& to) {
+            REQUIRE(text.find(from) != std::string::npos);
+            text.replace(text.find(from), from.size(), to);
+        };
+        put("at (0, 0, 0) m", "facing " + std::to_string(c.facing_deg) + " deg");
+        put("at (0, 0, 0.92) m, facing 180 deg", "at " + at_distance(0.92, 0) + ", facing " +
+                                                     std::to_string(c.facing_deg + 180) + " deg");
+        put("sphere { diameter 22 cm, at (0, 0.11, 0.4) m }",
+            std::string("box { size ") + c.box + ", at " + at_distance(0.4, c.size.y / 2) + " }");
+        MemoryFiles files;
+        files.add("scene.pup", text);
+        const Scene scene = must(load(files, "scene.pup"));
+        const Performed p = performed(scene);
+        CHECK_MESSAGE(p.notes.empty(), told(p.notes));
+        check_good(measured(p, scene, 0), "ana");
+        check_good(measured(p, scene, 1), "rui");
+        const stage::Performance& shown = *p.performance;
+        double grasp = 0, given = 0;
+        for (const stage::StageEvent& e : shown.events()) {
+            grasp = e.name == "grasp" ? e.at.seconds() : grasp;
+            given = e.name == "hand_over" ? e.at.seconds() : given;
+        }
+        CHECK(shown.holder({0}, at(given + 0.01)) == "rui.hands");
+        Transform before = shown.world_from_prop({0}, at(0));
+        for (double t = 0; t < 8.5; t += 1.0 / 120) {
+            const Transform box = shown.world_from_prop({0}, at(t));
+            CHECK_MESSAGE(length(box.translation - before.translation) < 3.0 / 120 + 1e-6, t);
+            CHECK_MESSAGE(angle_between(box.rotation, before.rotation) < 8.0 / 120 + 1e-6, t);
+            before = box;
+            if (t < grasp) {
+                continue;
+            }
+            // Each palm lies on a face: one coordinate is half the size, the others are inside it.
+            const std::uint32_t holder = t < given ? 0 : 1;
+            for (int side = 0; side < 2; ++side) {
+                const Vec3 palm_box = inverse(box) * palm(shown, holder, side, t);
+                const double x = std::fabs(palm_box.x), z = std::fabs(palm_box.z);
+                const bool on_x = std::fabs(x - c.size.x / 2) < 0.004 && z < 0.02,
+                           on_z = std::fabs(z - c.size.z / 2) < 0.004 && x < 0.02;
+                CHECK_MESSAGE((on_x || on_z), t << " s, side " << side << ": " << palm_box.x << " "
+                                                << palm_box.y << " " << palm_box.z);
+                CHECK_MESSAGE(std::fabs(palm_box.y) < 0.02, t << " s: " << palm_box.y);
+            }
+        }
+    }
+}
+
 TEST_CASE("what lies too far is not picked up, and nobody far off is handed anything [unit]") {
     const auto notes = [](const std::string& cast, const std::string& call) {
         MemoryFiles files;
@@ -99,6 +167,8 @@ TEST_CASE("what lies too far is not picked up, and nobody far off is handed anyt
     };
     CHECK(notes(" ball: sphere { at (0, 0.11, 2) m }\n", "pick_up(ball)") == "out-of-reach");
     CHECK(notes(" ball: sphere { at (0, 0.11, 0.4) m }\n", "pick_up(ball)") == "");
+    CHECK(notes(" ball: box { size (0.8, 0.3, 0.8) m, at (0, 0.15, 0.4) m }\n", "pick_up(ball)") ==
+          "out-of-reach");
     CHECK(notes(" rui: mannequin { at (0, 0, 3) m }\n ball: sphere { held by ana.hands }\n",
                 "hand_over(ball, to: rui)") == "out-of-reach");
     CHECK(notes(" rui: mannequin { at (0, 0, 0.9) m }\n ball: sphere { at (0, 0.11, 3) m }\n",

@@ -6,12 +6,13 @@
 #include <optional>
 
 #include "puppetri/motion/context.h"
+#include "puppetri/motion/grip.h"
 #include "puppetri/motion/movement.h"
 
 namespace puppetri::motion {
 
 struct CarrySpec {
-    double radius_m = 0.11;
+    Grip grip = {};
     double duration_s = 1;  // what `takes auto` gets
     bool held =
         true;  // the hands have the ball now: they bring it along, as one rigid body with it
@@ -23,7 +24,7 @@ struct CarrySpec {
 MovementPtr make_carry(const MotionContext& context, const CarrySpec& spec);
 
 // The ball of a carrying figure in chest space, at rest.
-Transform carried_ball_chest(const figure::Figure& figure, double radius_m);
+Transform carried_ball_chest(const figure::Figure& figure, const Grip& grip);
 
 // Both arms come to hang. Made for fast hands: each arm swings on about its shoulder and dies out,
 // as after a throw.

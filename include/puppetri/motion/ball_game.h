@@ -10,12 +10,13 @@
 #pragma once
 #include "puppetri/motion/context.h"
 #include "puppetri/motion/flight.h"
+#include "puppetri/motion/grip.h"
 #include "puppetri/motion/movement.h"
 
 namespace puppetri::motion {
 
 struct ThrowSpec {
-    double radius_m = 0.11;
+    Grip grip = {};
     Vec3 target_world = {};    // the ball's centre at the catch
     double duration_s = 0.85;  // until the release, which ends the movement
     bool held = true;          // both hands are on the ball; otherwise they throw air
@@ -31,7 +32,7 @@ double aside_rad(const figure::Figure& figure, const Controls& controls, Vec3 ta
 inline constexpr double kMostAside_rad = 0.45;
 
 struct ReadySpec {
-    double radius_m = 0.11;
+    Grip grip = {};
     double heading_rad = 0;   // from where the ball will come
     double duration_s = 0.6;  // a prescribed duration in the context replaces it
 };
@@ -52,7 +53,7 @@ struct ReceiveSpec {
 MovementPtr make_receive(const MotionContext& context, const ReceiveSpec& spec);
 
 struct CatchSpec {
-    double radius_m = 0.11;
+    Grip grip = {};
     double duration_s = 0.7;
     bool held = true;  // both hands are on the ball; otherwise they close on air
 };

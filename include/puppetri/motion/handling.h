@@ -3,12 +3,13 @@
 // hold it from one instant on, and bring it before the belly.
 #pragma once
 #include "puppetri/motion/context.h"
+#include "puppetri/motion/grip.h"
 #include "puppetri/motion/movement.h"
 
 namespace puppetri::motion {
 
 struct PickUpSpec {
-    double radius_m = 0.11;
+    Grip grip = {};
     Vec3 ball_world = {};  // its centre
     double duration_s = 2.4;
 };
@@ -31,7 +32,7 @@ HandOver meeting_of(const figure::Figure& giver, const Controls& from, const fig
 inline constexpr double kHandOver_s = 1.0;  // from its start until the taker has the ball
 
 struct GiveSpec {
-    double radius_m = 0.11;
+    Grip grip = {};
     Vec3 meeting_world = {};
     double duration_s = 1.9;
 };
@@ -40,7 +41,7 @@ struct GiveSpec {
 MovementPtr make_give(const MotionContext& context, const GiveSpec& spec);
 
 struct TakeSpec {
-    double radius_m = 0.11;
+    Grip grip = {};
     Vec3 ball_world = {};
     double grasps_s = kHandOver_s;  // when the hands have closed on it
     double roll_rad = 0;            // of the hands about the ball, the left one up: out of the way

@@ -10,6 +10,7 @@
 #include "puppetri/base/diagnostic.h"
 #include "puppetri/motion/bound_call.h"
 #include "puppetri/motion/context.h"
+#include "puppetri/motion/grip.h"
 #include "puppetri/motion/movement.h"
 
 namespace puppetri::motion {
@@ -23,7 +24,7 @@ struct ActorState {
 
 struct PropState {
     Vec3 position_world = {};  // of the centre
-    double radius_m = 0;
+    Grip grip = {};            // as the hands of the subject take it, or as hands hold it
     ActorIndex held_by = {};  // none: in the air or on the floor
     // In one hand of that actor; otherwise, where there is a holder, in both.
     std::optional<Side> in_hand = {};
