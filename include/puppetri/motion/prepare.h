@@ -25,7 +25,7 @@ struct ActorState {
 struct PropState {
     Vec3 position_world = {};  // of the centre
     Grip grip = {};            // as the hands of the subject take it, or as hands hold it
-    ActorIndex held_by = {};  // none: in the air or on the floor
+    ActorIndex held_by = {};   // none: in the air or on the floor
     // In one hand of that actor; otherwise, where there is a holder, in both.
     std::optional<Side> in_hand = {};
     Quat rotation_world = {};
