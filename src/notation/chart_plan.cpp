@@ -9,6 +9,7 @@ namespace {
 // Beyond this a chart is refused: regions that all leave one another by dozens of transitions, or
 // histories of histories.
 constexpr std::size_t kMaxDiagrams = 20'000, kMaxConflicts = 60'000, kMaxWork = 200'000;
+constexpr double kMaxWritten = 20'000;
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
@@ -123,8 +124,17 @@ void Plan::prepare() {
             compute_entry(m);
         }
         conflicts += m.conflicts.size() * m.picked_by.size();
-        too_large = too_large || conflicts > kMaxConflicts;
     }
+    const std::vector<double> sizes = diagrams.sizes();
+    double written = 0;
+    for (const Move& m : moves) {
+        for (const auto* list : {&m.entry.states, &m.entry.defaults, &m.entry.histories}) {
+            for (const Diagrams::Id id : *list) {
+                written += id <= 1 ? 0 : sizes[id];
+            }
+        }
+    }
+    too_large = too_large || conflicts > kMaxConflicts || written > kMaxWritten;
 }
 
 // Both may be selected at once, and leave states in common.
@@ -277,6 +287,14 @@ Diagrams::Id Diagrams::choose(Id a, Id b, Id c) {
     const Id high = choose(half(a, true), half(b, true), half(c, true));
     const Id out = make({top, low, high});
     chosen_.emplace(std::array<Id, 3>{a, b, c}, out);
+    return out;
+}
+
+std::vector<double> Diagrams::sizes() const {
+    std::vector<double> out(nodes_.size(), 1);
+    for (std::size_t i = 2; i < nodes_.size(); ++i) {  // made behind what they are made of
+        out[i] = 1 + out[nodes_[i].low] + out[nodes_[i].high];
+    }
     return out;
 }
 

@@ -60,6 +60,8 @@ class Diagrams {
     Id opposite(Id a) { return choose(a, 0, 1); }
     Truth truth(Id a, lang::Span where) const;
     std::size_t size() const { return nodes_.size(); }
+    // How large each becomes as a formula, in which nothing is shared.
+    std::vector<double> sizes() const;
 
  private:
     struct Node {
