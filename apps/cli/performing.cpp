@@ -153,13 +153,15 @@ Result<Staged, int> load_and_perform(const Arguments& arguments) {
     say_diagnostics(performed->notes);
     if (performed->fault) {
         say_diagnostics({*performed->fault});
-        // Equations without a solution are bad input; a net that stops has failed.
-        const std::string& code = performed->fault->code;
-        const bool equations = code == "equations-blow-up" || code == "crossings-accumulate";
-        return Unexpected<int>(equations ? kBadInput : kFailed);
+        return Unexpected<int>(status_of_fault(*performed->fault));
     }
     staged.performed = std::move(*performed);
     return staged;
+}
+
+int status_of_fault(const Diagnostic& fault) {
+    return fault.code == "equations-blow-up" || fault.code == "crossings-accumulate" ? kBadInput
+                                                                                     : kFailed;
 }
 
 std::string ending_of(const std::string& path) {

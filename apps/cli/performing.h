@@ -36,6 +36,10 @@ struct Staged {
 // the exit code then.
 Result<Staged, int> load_and_perform(const Arguments& arguments);
 
+// What a program ends with whose run stopped so: equations without a solution are bad input, a net
+// that stops has failed.
+int status_of_fault(const Diagnostic& fault);
+
 // The ending of a path in small letters with its dot, ".glb"; empty when there is none.
 std::string ending_of(const std::string& path);
 

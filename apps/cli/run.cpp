@@ -163,7 +163,10 @@ int run(const Arguments& arguments) {
         const std::string table = measures_table(scene->net, *metrics, measured);
         std::fwrite(table.data(), 1, table.size(), stdout);
     }
-    return good && !result.fault && !result.interrupted ? kFine : kFailed;
+    if (result.fault) {
+        return status_of_fault(*result.fault);
+    }
+    return good && !result.interrupted ? kFine : kFailed;
 }
 
 }  // namespace
