@@ -30,6 +30,9 @@ double residual_of(const net::QueueNetwork& net, const std::vector<StationLoad>&
 }  // namespace
 
 std::optional<double> SolvedQueues::value(const Metric& m) const {
+    if (!of_place(m.kind) && m.kind != MetricKind::kRate) {
+        return std::nullopt;  // measures of the author, counts
+    }
     double inside = 0, from_outside = 0;
     for (std::size_t i = 0; i < loads.size(); ++i) {
         inside += loads[i].customers;
