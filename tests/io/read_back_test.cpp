@@ -22,9 +22,11 @@ namespace {
 using test::Example;
 
 constexpr const char* kExamples[] = {
-    "01_toss/toss.pup",      "02_walk/figure.pup",  "02_walk/limbs.pup",     "02_walk/legs.pup",
-    "02_walk/twice.pup",     "02_walk/duty.pup",    "03_ball/ball.pup",      "03_ball/figure5.pup",
-    "03_ball/impatient.pup", "03_ball/no_ball.pup", "03_ball/two_balls.pup", "03_ball/waits.pup"};
+    "01_toss/toss.pup",        "02_walk/figure.pup",    "02_walk/limbs.pup",
+    "02_walk/legs.pup",        "02_walk/twice.pup",     "02_walk/duty.pup",
+    "03_ball/ball.pup",        "03_ball/figure5.pup",   "03_ball/impatient.pup",
+    "03_ball/no_ball.pup",     "03_ball/two_balls.pup", "03_ball/waits.pup",
+    "10_two_legs/two_legs.pup"};
 
 io::Take take_of(const Example& e, const io::TakeOptions& options = {}) {
     auto take = io::sample_take(e.performance(), options);

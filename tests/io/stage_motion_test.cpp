@@ -18,8 +18,9 @@ using test::Stretch;
 
 namespace {
 
-constexpr const char* kWalks[] = {"02_walk/figure.pup", "02_walk/limbs.pup", "02_walk/legs.pup",
-                                  "02_walk/twice.pup", "02_walk/duty.pup"};
+constexpr const char* kWalks[] = {
+    "02_walk/figure.pup", "02_walk/limbs.pup",        "02_walk/legs.pup",       "02_walk/twice.pup",
+    "02_walk/duty.pup",   "10_two_legs/two_legs.pup", "10_two_legs/waiting.pup"};
 constexpr const char* kGames[] = {
     "01_toss/toss.pup",    "03_ball/ball.pup",      "03_ball/figure5.pup", "03_ball/impatient.pup",
     "03_ball/no_ball.pup", "03_ball/two_balls.pup", "03_ball/waits.pup"};
@@ -30,7 +31,8 @@ bool walks(const Stretch& s) {
 }
 // A step in the middle of a walk; its place is one of those that all walks name so.
 bool whole_step(const Stretch& s) {
-    return s.place.find("P4") != std::string::npos || s.place.find("P6") != std::string::npos;
+    return s.place.find("P4") != std::string::npos || s.place.find("P6") != std::string::npos ||
+           s.place.find("lifted") != std::string::npos;
 }
 
 // What holds for whatever the net strings together.
@@ -128,6 +130,14 @@ TEST_CASE("every walk of the examples keeps the table of good motion [law]") {
             }
         }
     }
+}
+
+TEST_CASE("the steps of a script, with pauses between them, keep the table of good motion [law]") {
+    const Example& e = test::example("10_two_legs/sampled.pup");
+    const Measures m = test::measured_on_stage(e, 0, 0, e.end_s());
+    INFO(test::report(m));
+    check_always(m);
+    CHECK(check_swings(m, test::stretches_of(e, 0, e.end_s())) == 4);
 }
 
 TEST_CASE(

@@ -138,6 +138,67 @@ TEST_CASE("the duet goes on while two are frozen; explained, repaired, proved [a
     }
 }
 
+TEST_CASE("never both legs in the transfer state: proved of each form of the machines [agree]") {
+    for (const char* name : {"10_two_legs/two_legs.pup", "10_two_legs/waiting.pup",
+                             "10_two_legs/sampled.pup", "10_two_legs/legs.tookima"}) {
+        const Example e(name);
+        for (const Verdict& v : e.verdicts) {
+            CHECK_MESSAGE(v.answer == Answer::kProved,
+                          name << ": " << v.rule << " " << name_of(v) << " " << v.reason);
+        }
+    }
+}
+
+TEST_CASE("the machines as printed: time does not go on, and samples see a leg too late [agree]") {
+    const Example literal("10_two_legs/literal.pup");
+    CHECK(literal.of("builtin.time_goes_on").answer == Answer::kRefuted);
+    CHECK(std::any_of(literal.scene->notes.begin(), literal.scene->notes.end(),
+                      [](const Diagnostic& d) { return d.code == "zero-time-poll"; }));
+    // In the manner of the printed script: legs report at every instant, so that the controller
+    // takes a report from before its own command for news.
+    scene::MemoryFiles files;
+    files.add("reports.tookima", R"(DEF_ESM(CTRL, "L1") DEF_ESM(LEFT, "SL") DEF_ESM(RIGHT, "SR")
+DEF_EVENT(BL) DEF_EVENT(BR) DEF_CHANNEL(ML) DEF_CHANNEL(MR) DEF_CHANNEL(CL) DEF_CHANNEL(CR)
+TIME_INTERVAL(0., 11.) SAMPLES(12) FUNCTION(go_left) FUNCTION(go_right)
+START_SIMULATION
+BEGIN_ESM(CTRL) CHANNEL(ML) CHANNEL(MR) CHANNEL(CL) CHANNEL(CR)
+ACTION(CTRL, "L1", MATCH(ML, "SL"), CR="AR", "L2")
+ACTION(CTRL, "L2", MATCH(MR, "SR"), CL="AL", "L1")
+END_ESM
+BEGIN_ESM(LEFT) CHANNEL(ML) CHANNEL(CL) EVENT(BL)
+ACTION(LEFT, "SL", MATCH(CL, "AL"), go_left(), "TL")
+ACTION(LEFT, "SL", TRUE, ML=LEFT, "SL")
+ACTION(LEFT, "TL", BL, NO_TASK, "SL")
+ACTION(LEFT, "TL", TRUE, ML=LEFT, "TL")
+END_ESM
+BEGIN_ESM(RIGHT) CHANNEL(MR) CHANNEL(CR) EVENT(BR)
+ACTION(RIGHT, "SR", MATCH(CR, "AR"), go_right(), "TR")
+ACTION(RIGHT, "SR", TRUE, MR=RIGHT, "SR")
+ACTION(RIGHT, "TR", BR, NO_TASK, "SR")
+ACTION(RIGHT, "TR", TRUE, MR=RIGHT, "TR")
+END_ESM
+END_SIMULATION
+)");
+    files.add("main.pup", R"(language 1
+scene "as printed"
+cast { ana: mannequin }
+use "reports.tookima" as legs {
+  LEFT:  ana.left_leg
+  RIGHT: ana.right_leg
+}
+rule specification never (legs.LEFT.TL and legs.RIGHT.TR)
+)");
+    const auto scene = scene::load(files, "main.pup");
+    REQUIRE(scene.has_value());
+    ProveOptions options;
+    options.budget.seconds = 20;
+    for (const Verdict& v : prove(*scene, options)) {
+        if (v.rule == "specification") {
+            CHECK_MESSAGE(v.answer == Answer::kRefuted, name_of(v) << " " << v.reason);
+        }
+    }
+}
+
 TEST_CASE(
     "many pairs and a ring of balls with identity are proved part by part and by theorems "
     "[agree]") {
