@@ -17,21 +17,28 @@ constexpr std::array kFormats = {
     ForeignFormat{".tuples", "which keyframe an object reaches when", read_tuple_file},
 };
 
+// In capitals or not; something must stand before it.
+bool ends_in(std::string_view path, std::string_view ending) {
+    return path.size() > ending.size() &&
+           std::equal(ending.begin(), ending.end(),
+                      path.end() - static_cast<std::ptrdiff_t>(ending.size()), [](char a, char b) {
+                          return a == (b >= 'A' && b <= 'Z' ? b + ('a' - 'A') : b);
+                      });
+}
+
 }  // namespace
 
 std::span<const ForeignFormat> foreign_formats() { return kFormats; }
 
 const ForeignFormat* find_foreign_format(std::string_view path) {
     const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const ForeignFormat& f) {
-        return path.size() > f.ending.size() &&
-               path.substr(path.size() - f.ending.size()) == f.ending;
+        return ends_in(path, f.ending);
     });
     return found == kFormats.end() ? nullptr : &*found;
 }
 
 bool is_scene_file(std::string_view path) {
-    return (path.size() > 4 && path.substr(path.size() - 4) == ".pup") ||
-           find_foreign_format(path) != nullptr;
+    return ends_in(path, ".pup") || find_foreign_format(path) != nullptr;
 }
 
 lang::Parsed parse(std::string_view text, std::string_view path, std::uint32_t file) {

@@ -114,6 +114,30 @@ bool too_deep(const pugi::xml_node& root) {
     return false;
 }
 
+// The first & that pugixml would leave as it is: of no entity that XML has. None: npos.
+std::size_t unknown_entity(std::string_view text) {
+    for (std::size_t at = text.find_first_of("<&"); at < text.size();
+         at = text.find_first_of("<&", at + 1)) {
+        const auto skip = [&](std::string_view open, std::string_view close) {
+            const bool here = text.substr(at, open.size()) == open;
+            at = here ? std::min(text.find(close, at), text.size() - 1) : at;
+            return here;
+        };
+        if (skip("<!--", "-->") || skip("<![CDATA[", "]]>") || skip("<?", "?>") ||
+            text[at] == '<') {
+            continue;
+        }
+        const std::string_view rest = text.substr(at + 1, 12);
+        const std::string_view name = rest.substr(0, rest.find(';'));
+        const bool known = name == "amp" || name == "lt" || name == "gt" || name == "quot" ||
+                           name == "apos" || (!name.empty() && name[0] == '#');
+        if (!known || name.size() == rest.size()) {
+            return at;
+        }
+    }
+    return std::string_view::npos;
+}
+
 }  // namespace
 
 const Attribute* Element::find(std::string_view attribute) const {
@@ -136,6 +160,10 @@ Document parse(std::string_view text, std::uint32_t file) {
                     std::string("this is no XML: ") + result.description(),
                     "mend the file there; programs that write XML do not make this");
         return out;
+    }
+    if (const std::size_t at = unknown_entity(text); at != text.npos) {
+        copier.fail("bad-xml", at, "this & begins no entity that XML has",
+                    "write &amp;, or write out what the entity stands for");
     }
     std::size_t elements = 0;
     for (const pugi::xml_node n : document.children()) {

@@ -60,9 +60,10 @@ std::optional<std::uint32_t> token_attribute(const Term& term) {
     return e->nodes()[0].slot.index;
 }
 
-bool has_side(const MovementSignature& signature) {
-    return std::any_of(signature.parameters.begin(), signature.parameters.end(),
-                       [](const motion::Parameter& p) { return p.name == "side"; });
+const motion::Parameter* side_of(const MovementSignature& signature) {
+    const auto found = std::find_if(signature.parameters.begin(), signature.parameters.end(),
+                                    [](const motion::Parameter& p) { return p.name == "side"; });
+    return found == signature.parameters.end() ? nullptr : &*found;
 }
 
 bool takes_attribute(const motion::TypeSet& types, ValueKind kind) {
@@ -136,7 +137,7 @@ std::optional<motion::BoundCall> Elaboration::bind_call(const lang::Expr& call,
     }
     if (const MovementSignature* sided = motion::find_movement(name.text, SubjectKind::kActor);
         signature == nullptr && kind == SubjectKind::kLimb && sided != nullptr &&
-        has_side(*sided)) {
+        side_of(*sided) != nullptr) {
         bind_arguments(call, *sided, scope, out, true);
         const motion::Subject limb = out.subject;
         return done_by(limb, std::move(out), who.span);
@@ -182,10 +183,10 @@ std::optional<motion::BoundCall> Elaboration::done_by(const motion::Subject& sub
                                                       motion::BoundCall call, lang::Span where) {
     call.subject = subject;
     const bool limb = subject.kind == SubjectKind::kLimb;
-    const bool sided = has_side(motion::signature_of(call, SubjectKind::kActor));
+    const motion::Parameter* sided = side_of(motion::signature_of(call, SubjectKind::kActor));
     const auto given = std::find_if(call.arguments.begin(), call.arguments.end(),
                                     [](const auto& a) { return a.parameter == "side"; });
-    if (subject.kind == SubjectKind::kProp || (limb && !sided)) {
+    if (subject.kind == SubjectKind::kProp || (limb && sided == nullptr)) {
         error("wrong-subject", where, "this movement is one of an actor", "name an actor");
         return std::nullopt;
     }
@@ -201,7 +202,8 @@ std::optional<motion::BoundCall> Elaboration::done_by(const motion::Subject& sub
             return std::nullopt;
         }
         call.subject = {.kind = SubjectKind::kActor, .actor = subject.actor};
-    } else if (sided && given == call.arguments.end()) {
+    } else if (sided != nullptr && sided->default_text.empty() && !sided->optional &&
+               given == call.arguments.end()) {
         error("missing-argument", where, call.movement + " needs its side",
               "write it, or name the limb that does it: ana.left_leg");
         return std::nullopt;

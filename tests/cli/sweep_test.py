@@ -207,7 +207,7 @@ use shop""").replace("8 h", "400 h"))
         lines = (self.path / "3.csv").read_text().splitlines()
         changed = lines[:4] + [lines[4].rsplit(",", 1)[0] + ",shop.leave"] * 2
         (self.path / "broken.csv").write_text("\n".join(changed) + "\n")
-        one = json.loads(tool("compare", "3.csv", "broken.csv", "--json", "--on", "shop.pup", code=1))
+        one = json.loads(tool("compare", "3.csv", "broken.csv", "--json", "--on", "shop.pup", code=1).splitlines()[0])
         self.assertIn(one["common"], (3, 4))
         told = tool("replay", "shop.pup", "broken.csv", code=1)
         self.assertIn("broken.csv:", told)

@@ -132,14 +132,6 @@ TEST_CASE("every walk of the examples keeps the table of good motion [law]") {
     }
 }
 
-TEST_CASE("the steps of a script, with pauses between them, keep the table of good motion [law]") {
-    const Example& e = test::example("10_two_legs/sampled.pup");
-    const Measures m = test::measured_on_stage(e, 0, 0, e.end_s());
-    INFO(test::report(m));
-    check_always(m);
-    CHECK(check_swings(m, test::stretches_of(e, 0, e.end_s())) == 4);
-}
-
 TEST_CASE(
     "feet stand for the duty factor's part of the period, to a frame, as seen and as told "
     "[law]") {

@@ -103,8 +103,9 @@ TEST_CASE("every movement prepares with its defaults, inside its interval, on it
         const MotionContext context = scene.context(static_cast<int>(who));
         Diagnostics notes;
         const Prepared prepared = prepare(call, context, scene.around(who), notes);
-        // These want a ball on the floor, or somebody near.
-        CHECK((notes.empty() || m.name == "pick_up" || m.name == "hand_over" || m.name == "hug"));
+        // These want a thing within reach, or somebody near.
+        CHECK((notes.empty() || m.name == "pick_up" || m.name == "hand_over" || m.name == "hug" ||
+               m.name == "take" || m.name == "lay"));
         const Movement& movement = *prepared.movement;
         CHECK(movement.duration >= m.shortest);
         CHECK(movement.duration <= m.longest);
@@ -112,7 +113,8 @@ TEST_CASE("every movement prepares with its defaults, inside its interval, on it
         const LimbSet expected{static_cast<std::uint8_t>(
             m.limbs.bits |
             (m.subject == SubjectKind::kLimb ? 1 << static_cast<int>(call.subject.limb) : 0))};
-        if (m.name == "reach" || m.name == "point" || m.name == "aim" || m.name == "eat") {
+        if (m.name == "reach" || m.name == "point" || m.name == "aim" || m.name == "eat" ||
+            m.name == "take" || m.name == "lay") {
             CHECK((movement.limbs.bits & ~expected.bits) == 0);  // one hand
         } else {
             CHECK(movement.limbs == expected);
