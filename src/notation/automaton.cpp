@@ -31,13 +31,13 @@ class Automaton {
     void lower() {
         for (const lang::Property& p : block_.properties) {
             Line line(p, teller_);
-            if (!is_edge(p)) {
+            if (!has_arrow(p)) {
                 state(line);
             }
         }
         for (const lang::Property& p : block_.properties) {
             Line line(p, teller_);
-            if (is_edge(p)) {
+            if (has_arrow(p)) {
                 edge(line);
             }
         }
@@ -47,13 +47,8 @@ class Automaton {
  private:
     struct State {
         std::size_t place = 0;
-        bool entered = false, left = false, final = false;
+        bool entered = false;
     };
-
-    static bool is_edge(const lang::Property& p) {
-        return !p.values.empty() && p.values[0].kind == lang::ExprKind::kSymbol &&
-               p.values[0].text == "->";
-    }
 
     void state(Line& line) {
         lang::Place place = make_place(line.name().steps[0]);
@@ -79,7 +74,6 @@ class Automaton {
                 made.entered = true;
                 ++starts_;
             } else if (line.word("final")) {
-                made.final = true;
                 lang::End end;
                 end.formulas.push_back(make_reference(place.name.text, line.span()));
                 end.span = line.span();
@@ -115,12 +109,12 @@ class Automaton {
         if (to == nullptr) {
             return;
         }
-        State* before = find(line.name());
+        const State* before = find(line.name());
         State* after = find(*to);
         if (before == nullptr || after == nullptr) {
             return;
         }
-        before->left = after->entered = true;
+        after->entered = true;
         const std::string base = line.name().steps[0].text + "_to_" + to->steps[0].text;
         const int same = ++names_[base];
         lang::Transition t = make_transition(

@@ -72,13 +72,14 @@ class Cells {
             }
         };
         each(is_setting, [this](Line& line, const lang::Property& p) { setting(line, p); });
-        each([](const lang::Property& p) { return !is_setting(p) && !is_rule(p) && !is_start(p); },
-             [this](Line& line, const lang::Property&) { state(line); });
+        each(
+            [](const lang::Property& p) { return !is_setting(p) && !has_arrow(p) && !is_start(p); },
+            [this](Line& line, const lang::Property&) { state(line); });
         if (!good()) {
             return;
         }
         cells_.assign(static_cast<std::size_t>(grid_.columns * grid_.rows), 0);
-        each(is_rule, [this](Line& line, const lang::Property&) { rule(line); });
+        each(has_arrow, [this](Line& line, const lang::Property&) { rule(line); });
         each(is_start, [this](Line& line, const lang::Property&) { start(line); });
         make();
     }
@@ -101,16 +102,12 @@ class Cells {
     };
 
     static bool named(const lang::Property& p, std::initializer_list<std::string_view> names) {
-        return p.name.steps.size() == 1 && !is_rule(p) &&
+        return p.name.steps.size() == 1 && !has_arrow(p) &&
                std::find(names.begin(), names.end(), p.name.steps[0].text) != names.end();
     }
     static bool is_setting(const lang::Property& p) {
         return named(p, {"row", "ring", "grid", "torus", "every", "neighbours", "outside",
                          "figures", "wolfram"});
-    }
-    static bool is_rule(const lang::Property& p) {
-        return !p.values.empty() && p.values[0].kind == ExprKind::kSymbol &&
-               p.values[0].text == "->";
     }
     static bool is_start(const lang::Property& p) { return named(p, {"starts", "pattern"}); }
 
@@ -590,7 +587,7 @@ class Cells {
                              "add a line: ... -> " + s.name.text + ", or remove it");
             }
         }
-        const auto is_said = [](const lang::Property& p) { return is_rule(p); };
+        const auto is_said = [](const lang::Property& p) { return has_arrow(p); };
         if (!wolfram_ &&
             std::none_of(block_.properties.begin(), block_.properties.end(), is_said)) {
             teller_.error("no-rule", block_.name.span, "no line says how cells change",

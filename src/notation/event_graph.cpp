@@ -76,12 +76,12 @@ class EventGraph {
 
     void lower() {
         for (const lang::Property& p : block_.properties) {
-            if (!is_edge(p)) {
+            if (!has_arrow(p)) {
                 declaration(p);
             }
         }
         for (const lang::Property& p : block_.properties) {
-            if (is_edge(p)) {
+            if (has_arrow(p)) {
                 edge(p);
             }
         }
@@ -97,11 +97,6 @@ class EventGraph {
     }
 
  private:
-    static bool is_edge(const lang::Property& p) {
-        return !p.values.empty() && p.values[0].kind == ExprKind::kSymbol &&
-               p.values[0].text == "->";
-    }
-
     // ---- reading ----
     void declaration(const lang::Property& p) {
         const std::string word = lang::to_text(p.name);

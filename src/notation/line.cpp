@@ -12,6 +12,11 @@ void Teller::tell(Severity severity, std::string code, lang::Span where, std::st
                                 std::move(message), std::move(remedy)});
 }
 
+bool has_arrow(const lang::Property& property) {
+    return !property.values.empty() && property.values[0].kind == ExprKind::kSymbol &&
+           property.values[0].text == "->";
+}
+
 bool Line::word(std::string_view text) {
     const Expr* e = next();
     if (e == nullptr || e->kind != ExprKind::kPath || e->path.steps.size() != 1 ||

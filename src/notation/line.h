@@ -34,6 +34,9 @@ class Teller {
     Lowered& out_;
 };
 
+// Whether the line is `NAME -> ...`.
+bool has_arrow(const lang::Property& property);
+
 class Line {
  public:
     // `first`: the value to begin with, where a label stands before.

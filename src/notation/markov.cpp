@@ -51,12 +51,12 @@ class Markov {
             }
         }
         for (const lang::Property& p : block_.properties) {
-            if (!is_period(p) && !is_edge(p)) {
+            if (!is_period(p) && !has_arrow(p)) {
                 state(p);
             }
         }
         for (const lang::Property& p : block_.properties) {
-            if (!is_period(p) && is_edge(p)) {
+            if (!is_period(p) && has_arrow(p)) {
                 edge(p);
             }
         }
@@ -84,12 +84,8 @@ class Markov {
         lang::Span span;
     };
 
-    static bool is_edge(const lang::Property& p) {
-        return !p.values.empty() && p.values[0].kind == lang::ExprKind::kSymbol &&
-               p.values[0].text == "->";
-    }
     static bool is_period(const lang::Property& p) {
-        return p.name.steps.size() == 1 && p.name.steps[0].text == "every" && !is_edge(p);
+        return p.name.steps.size() == 1 && p.name.steps[0].text == "every" && !has_arrow(p);
     }
 
     void state(const lang::Property& p) {

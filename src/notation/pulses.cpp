@@ -144,9 +144,9 @@ class Pulses {
             }
             line.finish("every TIME");
         });
-        each([](const lang::Property& p) { return !is_period(p) && !is_arc(p) && !is_given(p); },
+        each([](const lang::Property& p) { return !is_period(p) && !has_arrow(p) && !is_given(p); },
              [this](Line& line) { vertex(line); });
-        each(is_arc, [this](Line& line) { arc(line); });
+        each(has_arrow, [this](Line& line) { arc(line); });
         each(is_given, [this](Line& line) { given(line); });
         if (!period_) {
             teller_.error("no-period", block_.name.span, "nothing says how long a step is",
@@ -180,13 +180,9 @@ class Pulses {
         return !p.values.empty() && p.values[0].kind == ExprKind::kPath &&
                p.values[0].path.steps.size() == 1 && p.values[0].path.steps[0].text == word;
     }
-    static bool is_arc(const lang::Property& p) {
-        return !p.values.empty() && p.values[0].kind == ExprKind::kSymbol &&
-               p.values[0].text == "->";
-    }
     static bool is_given(const lang::Property& p) { return begins_with(p, "gets"); }
     static bool is_period(const lang::Property& p) {
-        return p.name.steps.size() == 1 && p.name.steps[0].text == "every" && !is_arc(p);
+        return p.name.steps.size() == 1 && p.name.steps[0].text == "every" && !has_arrow(p);
     }
 
     void vertex(Line& line) {

@@ -51,12 +51,12 @@ class Reader {
 
     QueueModel read() {
         for (const lang::Property& p : block_.properties) {
-            if (!is_route(p)) {
+            if (!has_arrow(p)) {
                 declaration(p);
             }
         }
         for (const lang::Property& p : block_.properties) {
-            if (is_route(p)) {
+            if (has_arrow(p)) {
                 route(p);
             }
         }
@@ -64,11 +64,6 @@ class Reader {
     }
 
  private:
-    static bool is_route(const lang::Property& p) {
-        return !p.values.empty() && p.values[0].kind == ExprKind::kSymbol &&
-               p.values[0].text == "->";
-    }
-
     void declaration(const lang::Property& p) {
         const std::string word = lang::to_text(p.name);
         static const std::map<std::string, NodeKind> kinds = {{"source", NodeKind::kSource},
