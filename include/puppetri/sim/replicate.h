@@ -49,7 +49,8 @@ class Journal {
     enum class Known : std::uint8_t { kNo, kFinished, kFailed };
     virtual ~Journal() = default;
     virtual Known recall(std::uint64_t number, std::span<double> values, Diagnostic& fault) = 0;
-    // Called as replications end, one at a time, in any order.
+    // Called as replications end, one at a time, in any order; of runs that take less than a
+    // millisecond, a few milliseconds later.
     virtual void keep(std::uint64_t number, std::span<const double> values) = 0;
     virtual void keep_failure(std::uint64_t number, const Diagnostic& fault) = 0;
     // Some replications of others are missing: looks what there is by now, after a while.
@@ -66,8 +67,9 @@ struct Plan {
     double level = 0.95;
     bool antithetic = false;  // even counts; intervals are those of pairs
     unsigned threads = 1;
-    // Called now and then from one thread with what is done and what is needed as far as known.
-    // False ends the experiment with what there is.
+    // Called now and then, from one thread at a time, with what is done and what is needed as far
+    // as known: after a run, or after as many short ones as take some milliseconds. False ends the
+    // experiment with what there is.
     bool (*go_on)(void* context, std::uint64_t done, std::uint64_t needed) = nullptr;
     void* context = nullptr;
     Journal* journal = nullptr;
