@@ -3,12 +3,13 @@
 
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
+#include "puppetri/motion/pelvis_placement.h"
 #include "trunk.h"
 
 namespace puppetri::motion {
 
 Transform world_from_chest(const figure::Figure& figure, const Controls& controls) {
-    return Transform{controls.pelvis.rotation_world, controls.pelvis.position_world} *
+    return Transform{controls.pelvis.rotation_world, pelvis_in_reach(figure, controls)} *
            pelvis_from_upper_chest(figure, trunk_rotations(controls.body));
 }
 

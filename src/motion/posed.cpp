@@ -33,6 +33,9 @@ using figure::Pose;
 constexpr int kMostDofsOfJoint = 6;
 // What rests at the end rests as it was just before: a step there is no movement any more.
 constexpr double kBeforeEnd_s = 1e-9;
+// Legs that joints pose are not the controls' before the source's joints are set: the base's feet
+// must not draw the pelvis to them.
+constexpr PelvisRule kPelvis = PelvisRule::kAsWanted;
 // A contact so near to the end of a round goes on in the next.
 constexpr double kSeam_s = 1e-6;
 
@@ -105,13 +108,13 @@ class Posed final : public Movement {
         Scratch& s = scratch();
         Controls c = start_;
         own(t_s, c, s);
-        solve_controls(figure_, c, s.solved);
+        solve_controls(figure_, c, s.solved, kPelvis);
         // Arms are exactly as they are said to be, whatever breath and trunk do to the collar bone;
         // a head may turn beyond that to what it looks at.
         const bool joining = t_s < blend_s_;
         if (joining) {
             offset(t_s, c);
-            solve_controls(figure_, c, s.joining);
+            solve_controls(figure_, c, s.joining, kPelvis);
         }
         for (const auto& [limb, joint] : overlay_joints_) {
             if (!which.has(limb)) {
@@ -163,7 +166,7 @@ class Posed final : public Movement {
                                lerp(arm.chest_from_hand.translation, fixed.translation, w)};
         arm.world_weight = 0;
         Pose& solved = scratch().joining;
-        solve_controls(figure_, c, solved);
+        solve_controls(figure_, c, solved, kPelvis);
         const figure::Arm& joints = figure_.arms[i];
         for (const JointIndex joint : {joints.clavicle, joints.shoulder, joints.shoulder_twist,
                                        joints.elbow, joints.elbow_twist, joints.hand}) {
@@ -277,7 +280,7 @@ class Posed final : public Movement {
             const Transform pelvis = world_from_round(at.round) * frame.start_from_pelvis;
             c.pelvis = {pelvis.translation, pelvis.rotation};
         }
-        solve_controls(figure_, c, s.own);
+        solve_controls(figure_, c, s.own, kPelvis);
         pose_joints(frame, s.own);
         controls_from_pose(figure_, s.own, posed_, c);
         follow_paths(frame, c, s.own);
@@ -365,7 +368,7 @@ class Posed final : public Movement {
         arm.chest_from_hand.translation = chest;
         arm.world_weight = 0;
         Pose& solved = scratch().solved;
-        solve_controls(figure_, c, solved);
+        solve_controls(figure_, c, solved, kPelvis);
         solved.parent_from_joint[joints.hand.value].rotation = wrist;
         controls_from_pose(figure_, solved, limb_set(path.limb), c);
         if (fixed) {  // whatever the trunk of somebody else's movement does

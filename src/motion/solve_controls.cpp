@@ -6,6 +6,7 @@
 #include "limb_planes.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/limb_ik.h"
+#include "puppetri/motion/pelvis_placement.h"
 #include "puppetri/motion/two_bone_ik.h"
 #include "trunk.h"
 
@@ -48,8 +49,10 @@ class Solver {
     Solver(const Figure& figure, const Controls& controls, Pose& out)
         : f_(figure), c_(controls), out_(out) {}
 
-    SolveOutcome solve() {
-        const Vec3 p = c_.pelvis.position_world;
+    SolveOutcome solve(PelvisRule rule) {
+        const Vec3 p =
+            rule == PelvisRule::kInReach ? pelvis_in_reach(f_, c_) : c_.pelvis.position_world;
+        outcome_.pelvis_moved_m = length(p - c_.pelvis.position_world);
         world_from_pelvis_ = {c_.pelvis.rotation_world, p};
         const Transform world_from_root{about_y(heading_of(c_.pelvis.rotation_world)),
                                         {p.x, 0, p.z}};
@@ -190,7 +193,8 @@ class Solver {
 
 }  // namespace
 
-SolveOutcome solve_controls(const Figure& figure, const Controls& controls, Pose& out) {
+SolveOutcome solve_controls(const Figure& figure, const Controls& controls, Pose& out,
+                            PelvisRule rule) {
     const std::size_t count = figure.skeleton.joints.size();
     if (!figure.humanoid()) {
         out.parent_from_joint.resize(count);
@@ -208,7 +212,7 @@ SolveOutcome solve_controls(const Figure& figure, const Controls& controls, Pose
         out.parent_from_joint[i].translation =
             figure.skeleton.joints[i].parent_from_joint_rest.translation;
     }
-    return Solver(figure, controls, out).solve();
+    return Solver(figure, controls, out).solve(rule);
 }
 
 }  // namespace puppetri::motion

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Chains, looking with several joints, placing the pelvis, stacks of goals.
+// Chains, looking with several joints, stacks of goals.
 #include "puppetri/motion/chain_ik.h"
 
 #include <doctest/doctest.h>
@@ -9,7 +9,6 @@
 #include "puppetri/figure/mannequin.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/goal_stack.h"
-#include "puppetri/motion/pelvis_placement.h"
 #include "random_limbs.h"
 #include "support/count_allocations.h"
 
@@ -160,56 +159,6 @@ TEST_CASE("spine, neck and head look at a target together, within their limits [
                 pose)
             .residual_rad;
     CHECK(half == doctest::Approx(whole / 2).epsilon(0.02));
-}
-
-TEST_CASE("the pelvis goes to the nearest place from which both feet reach [oracle]") {
-    LimbSource random(3);
-    int lowered = 0, moved = 0, apart = 0;
-    for (int i = 0; i < 400; ++i) {
-        PelvisPlacement p{.wanted_world = {about_y(random.between(-3, 3)),
-                                           Vec3{0, 1, 0} + random.vector() * 0.3}};
-        for (int side = 0; side < 2; ++side) {
-            p.legs[side] = {.hip_pelvis = {side == 0 ? 0.1 : -0.1, -0.05, 0},
-                            .ankle_world = random.vector() * 0.7 + Vec3{0, 0.3, 0},
-                            .longest_m = random.between(0.75, 0.95)};
-        }
-        p.lower_first = i % 2 == 0;
-        const PlacedPelvis placed = place_pelvis(p);
-        const auto missing = [&](Vec3 at, int side) {
-            const LegReach& leg = p.legs[side];
-            return length(at + rotate(p.wanted_world.rotation, leg.hip_pelvis) - leg.ankle_world) -
-                   leg.longest_m;
-        };
-        const Vec3 at = placed.position_world, wanted = p.wanted_world.translation;
-        for (int side = 0; side < 2; ++side) {
-            CHECK(std::fmax(0, missing(at, side)) ==
-                  doctest::Approx(placed.residual_m[side]).epsilon(1e-6));
-        }
-        if (missing(wanted, 0) <= 0 && missing(wanted, 1) <= 0) {
-            CHECK(at == wanted);
-            continue;
-        }
-        if (placed.residual_m[0] > 0) {
-            CHECK(placed.residual_m[0] == doctest::Approx(placed.residual_m[1]));
-            ++apart;
-            continue;
-        }
-        const bool straight_down = at.x == wanted.x && at.z == wanted.z && at.y < wanted.y;
-        lowered += straight_down;
-        ++moved;
-        // No point nearer is good: straight down, or anywhere in a cloud of others.
-        for (int k = 0; k < 400; ++k) {
-            const Vec3 other = straight_down
-                                   ? Vec3{wanted.x, random.between(at.y, wanted.y), wanted.z}
-                                   : wanted + random.vector() * length(at - wanted);
-            if (length(other - wanted) < length(at - wanted) - 1e-9) {
-                CHECK((missing(other, 0) > -1e-9 || missing(other, 1) > -1e-9));
-            }
-        }
-    }
-    CHECK(lowered > 50);
-    CHECK(moved - lowered > 50);
-    CHECK(apart > 5);
 }
 
 TEST_CASE("a stack of goals meets all that can be met together, within limits [law]") {

@@ -10,8 +10,9 @@ namespace puppetri::motion {
 // 110 degrees on the head turns back ahead, without a jump.
 Quat gaze_at(const figure::Figure& figure, const Controls& controls, Vec3 target_world);
 
-// World transform of the joint upperChest and of a hand as the controls ask for it (no limits
-// applied); what `hold`, `reach` and `throw` compute with.
+// World transform of the joint upperChest and of a hand as the controls ask for it (the pelvis
+// within reach of both feet, pelvis_placement.h; no limits of joints applied); what `hold`, `reach`
+// and `throw` compute with.
 Transform world_from_chest(const figure::Figure& figure, const Controls& controls);
 Transform world_from_hand(const figure::Figure& figure, const Controls& controls, Side side);
 Transform world_from_palm(const figure::Figure& figure, const Controls& controls, Side side);
