@@ -2,11 +2,16 @@
 #include "puppetri/scene/perform.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace puppetri::scene {
 namespace {
 
-constexpr SimTime kSlice{kTicksPerSecond / 20};  // between two questions whether to go on
+// Between two questions whether to go on: the first slice, and how many firings one may have. A
+// slice that took no time is followed by one twice as long.
+constexpr SimTime kSlice{kTicksPerSecond / 20};
+constexpr std::uint64_t kSliceFirings = 10'000;
+constexpr auto kShort = std::chrono::milliseconds(10);
 constexpr SimTime kLongest{3600 * kTicksPerSecond};
 
 run::Limits limits_of(const Horizon& horizon) {
@@ -71,28 +76,48 @@ double Session::share_done() const {
     return 0;
 }
 
-bool Session::slice(SimTime until) {
+bool Session::slice(SimTime until, std::uint64_t firings) {
     run::Limits limits = limits_;
     limits.until = std::min(limits_.until, until);
+    limits.firings = std::min(limits_.firings, firings);
     stop_ = player_.run(limits);
     return stop_ == run::Stop::kLimit && player_.now() < limits_.until &&
            player_.firings() < limits_.firings;
 }
 
 bool Session::advance_to(SimTime at) {
-    slice(at);
+    slice(at, limits_.firings);
     // At rest now; an event from outside may wake it.
     return stop_ != run::Stop::kFault && player_.now() < limits_.until &&
            player_.firings() < limits_.firings;
 }
 
 void Session::run() {
+    if (options_.go_on == nullptr) {
+        slice(SimTime::never(), limits_.firings);
+        return;
+    }
     // In slices, so that the asker is heard; slices do not change what happens.
-    while (slice(player_.now() + kSlice)) {
-        if (options_.go_on != nullptr && !options_.go_on(options_.context, share_done())) {
+    using Clock = std::chrono::steady_clock;
+    SimTime length = kSlice;
+    Clock::time_point begun = Clock::now();
+    for (;;) {
+        const SimTime now = player_.now();
+        const bool longer = now.ticks < SimTime::never().ticks - length.ticks;
+        if (!slice(longer ? now + length : SimTime::never(), player_.firings() + kSliceFirings)) {
+            return;
+        }
+        if (!options_.go_on(options_.context, share_done())) {
             interrupted_ = true;
             return;
         }
+        const Clock::time_point ended = Clock::now();
+        if (ended - begun < kShort && length.ticks < SimTime::never().ticks / 4) {
+            length.ticks *= 2;
+        } else if (length > kSlice) {
+            length.ticks /= 2;
+        }
+        begun = ended;
     }
 }
 

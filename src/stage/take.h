@@ -29,7 +29,7 @@ struct ActorTake {
     std::unique_ptr<figure::Figure> figure;  // movements refer to it
     ActorTimeline timeline;
     std::vector<GazeSpan> gazes;
-    GazeTrack gaze_track;  // made when the take ends
+    GazeTrack gaze_track;  // made after the take, when poses are asked for
 };
 
 struct Take {

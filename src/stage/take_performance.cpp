@@ -3,6 +3,7 @@
 #include "take_performance.h"
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
 
 #include "puppetri/figure/mannequin_mesh.h"
@@ -47,14 +48,9 @@ GazeTrack make_gaze_track(const Take& take, ActorIndex actor) {
 class TakePerformance final : public Performance {
  public:
     explicit TakePerformance(Take take) : take_(std::move(take)) {
-        std::vector<GazeTrack> tracks;
-        for (std::uint32_t i = 0; i < take_.actors.size(); ++i) {
-            tracks.push_back(make_gaze_track(take_, ActorIndex{i}));
-        }
         actor_meshes_.reserve(take_.actors.size());
         std::optional<std::size_t> first_mannequin;
         for (std::size_t i = 0; i < take_.actors.size(); ++i) {
-            take_.actors[i].gaze_track = std::move(tracks[i]);
             const Actor& actor = take_.cast.actors[i];
             if (actor.body == BodyKind::kCharacter) {
                 actor_meshes_.emplace_back();  // it brings its own
@@ -93,6 +89,7 @@ class TakePerformance final : public Performance {
 
     void pose(ActorIndex actor, SimTime at, figure::Pose& out) const override {
         PUP_REQUIRE(actor.value < take_.actors.size());
+        look_around();
         const Actor& who = take_.cast.actors[actor.value];
         if (who.body != BodyKind::kCharacter || !who.character->humanoid) {
             take_.pose(actor, inside(at), out);
@@ -104,6 +101,7 @@ class TakePerformance final : public Performance {
     }
     Transform world_from_prop(PropIndex prop, SimTime at) const override {
         PUP_REQUIRE(prop.value < take_.props.size());
+        look_around();
         return take_.world_from_prop(prop, inside(at));
     }
     std::string holder(PropIndex prop, SimTime at) const override {
@@ -144,9 +142,24 @@ class TakePerformance final : public Performance {
                                 c.humanoid ? c.humanoid->rig.raw_hips : figure::JointIndex{}, &c});
     }
 
+    // The tracks of gazes go through the whole take, which may be days long: made when the first
+    // pose is asked for, so that who wants the score alone does not wait for them.
+    void look_around() const {
+        std::call_once(looked_, [this] {
+            std::vector<GazeTrack> tracks;
+            for (std::uint32_t i = 0; i < take_.actors.size(); ++i) {
+                tracks.push_back(make_gaze_track(take_, ActorIndex{i}));
+            }
+            for (std::size_t i = 0; i < tracks.size(); ++i) {
+                take_.actors[i].gaze_track = std::move(tracks[i]);
+            }
+        });
+    }
+
     SimTime inside(SimTime at) const { return std::clamp(at, SimTime{0}, take_.end); }
 
-    Take take_;
+    mutable Take take_;  // its gazes, by look_around
+    mutable std::once_flag looked_;
     std::vector<figure::Mesh> actor_meshes_, prop_meshes_;
     std::vector<ActorView> actor_views_;
     std::vector<PropView> prop_views_;

@@ -26,8 +26,8 @@ struct PerformOptions {
     // up, the first option, or what the stream says. Left out: chance decides, from the seed.
     std::optional<std::vector<std::int64_t>> script;
     bool record = false;  // keep the outside events in Performed::recording
-    // Asked about 20 times a second of model time, with the share done; answering false ends the
-    // run cleanly.
+    // Asked now and then with the share done: after a twentieth of a second of model time, then,
+    // while that takes no time, at ever longer intervals; answering false ends the run cleanly.
     bool (*go_on)(void* context, double share_done) = nullptr;
     void* context = nullptr;
 };
@@ -70,7 +70,7 @@ class Session {
     Checked<Performed> finish();
 
  private:
-    bool slice(SimTime until);
+    bool slice(SimTime until, std::uint64_t firings);
     double share_done() const;
 
     const Scene& scene_;
