@@ -18,7 +18,6 @@
 namespace {
 
 using namespace puppetri;
-using proof::Natural;
 using proof::PlainNet;
 using proof::SymbolicSpace;
 

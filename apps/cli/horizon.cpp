@@ -3,31 +3,13 @@
 
 #include <optional>
 
-#include "puppetri/base/rational.h"
+#include "puppetri/lang/decimal.h"
 #include "puppetri/lang/units.h"
 
 namespace puppetri::cli {
 namespace {
 
 constexpr const char* kForms = "write a time (40s), frames (960f) or firings (1000x)";
-
-std::optional<Rational> decimal(const std::string& text) {
-    std::int64_t digits = 0, denominator = 1;
-    bool point = false, any = false;
-    for (const char c : text) {
-        if (c == '.' && !point) {
-            point = true;
-            continue;
-        }
-        if (c < '0' || c > '9' || digits > 900'000'000'000'000 || denominator > 1'000'000'000'000) {
-            return std::nullopt;
-        }
-        digits = digits * 10 + (c - '0');
-        denominator *= point ? 10 : 1;
-        any = true;
-    }
-    return any ? make_rational(digits, denominator) : std::nullopt;
-}
 
 }  // namespace
 
@@ -37,7 +19,7 @@ Result<scene::Horizon, std::string> parse_horizon(const std::string& text,
     const std::string digits = text.substr(0, split);
     std::string unit = split == std::string::npos ? "" : text.substr(split);
     unit.erase(0, unit.find_first_not_of(' '));
-    const auto number = decimal(digits);
+    const auto number = lang::parse_decimal(digits);
     if (!number || unit.empty()) {
         return Unexpected(text + " says nothing that can be counted: " + kForms);
     }

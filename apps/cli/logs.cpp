@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "csv.h"
 #include "puppetri/base/text.h"
 #include "puppetri/motion/library.h"
 #include "score_chart.h"
@@ -11,18 +12,6 @@
 
 namespace puppetri::cli {
 namespace {
-
-// A field with a comma or a quote is quoted (RFC 4180).
-std::string field(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) {
-        return text;
-    }
-    std::string out = "\"";
-    for (const char c : text) {
-        out += c == '"' ? "\"\"" : std::string(1, c);
-    }
-    return out + "\"";
-}
 
 std::string seconds(SimTime t) { return number_to_text(t.seconds()); }
 
@@ -69,7 +58,7 @@ Result<CsvLog, Diagnostics> CsvLog::open(const std::string& path, const net::Net
 
 void CsvLog::fired(SimTime at, net::TransitionIndex transition) {
     buffer_ += std::to_string(at.ticks) + "," + seconds(at) + "," +
-               field(std::string(net_->transition(transition).path)) + "\n";
+               csv_field(std::string(net_->transition(transition).path)) + "\n";
     if (buffer_.size() > (1u << 20)) {
         flush();
     }
@@ -99,9 +88,9 @@ std::string score_csv(const stage::Performance& performance) {
     for (const stage::ScoreEntry& e : performance.score()) {
         const std::string left = e.left == SimTime::never() ? "" : std::to_string(e.left.ticks);
         text += std::to_string(e.start.ticks) + "," + std::to_string(e.end.ticks) + "," + left +
-                "," + seconds(e.start) + "," + seconds(e.end) + "," + field(e.place) + "," +
-                field(e.actor) + "," + limbs_text(e.limbs) + "," + field(e.movement) + "," +
-                field(e.prop) + "," + field(e.instance) + "\n";
+                "," + seconds(e.start) + "," + seconds(e.end) + "," + csv_field(e.place) + "," +
+                csv_field(e.actor) + "," + limbs_text(e.limbs) + "," + csv_field(e.movement) + "," +
+                csv_field(e.prop) + "," + csv_field(e.instance) + "\n";
     }
     return text;
 }

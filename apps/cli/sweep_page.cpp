@@ -5,35 +5,13 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "puppetri/io/xml_escaped.h"
 #include "sweep_report.h"
 
 namespace puppetri::cli {
 namespace {
 
 constexpr double kWidth = 420, kHeight = 240, kLeft = 58, kRight = 14, kTop = 14, kBottom = 40;
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '&':
-                out += "&amp;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
 
 std::string number(double x) {
     char text[32];
@@ -76,7 +54,7 @@ std::string line(double x1, double y1, double x2, double y2, const char* style) 
 
 std::string text_at(double x, double y, const std::string& text, const char* anchor) {
     return "<text x='" + number(x) + "' y='" + number(y) + "' text-anchor='" + anchor + "'>" +
-           escaped(text) + "</text>";
+           io::xml_escaped(text) + "</text>";
 }
 
 std::string frame(const Axis& y) {
@@ -91,7 +69,7 @@ std::string frame(const Axis& y) {
 
 std::string figure(const MeasureName& measure, const std::string& inside) {
     const std::string unit = measure.unit.empty() ? "" : " [" + measure.unit + "]";
-    return "<figure><figcaption>" + escaped(measure.name + unit) +
+    return "<figure><figcaption>" + io::xml_escaped(measure.name + unit) +
            "</figcaption><svg viewBox='0 0 " + number(kWidth) + " " + number(kHeight) + "'>" +
            inside + "</svg></figure>\n";
 }
@@ -150,8 +128,9 @@ std::string means_plot(const SweepResult& result, std::size_t m) {
                         y_of(y.share(c.mean + c.half_width)), "bar");
         }
         svg += "<circle cx='" + number(px) + "' cy='" + number(py) + "' r='3'><title>" +
-               escaped(point_name(result.points[i])) + ": " + with_precision(c.mean, c.half_width) +
-               " &#177; " + with_precision(c.half_width, c.half_width) + "</title></circle>";
+               io::xml_escaped(point_name(result.points[i])) + ": " +
+               with_precision(c.mean, c.half_width) + " &#177; " +
+               with_precision(c.half_width, c.half_width) + "</title></circle>";
         path += (path.empty() ? "M" : "L") + number(px) + " " + number(py);
         if (!numeric && i % every == 0) {
             svg += text_at(px, kHeight - kBottom + 16, point_name(result.points[i]), "middle");
@@ -212,7 +191,7 @@ std::string sweep_page(const SweepResult& result) {
     std::string out =
         "<!doctype html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' "
         "content='width=device-width'><title>" +
-        escaped(result.title) +
+        io::xml_escaped(result.title) +
         "</title><style>\n"
         "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:1320px;padding:0 1em;"
         "color:#222;background:#fff}\n"
@@ -227,8 +206,8 @@ std::string sweep_page(const SweepResult& result) {
         "text-align:left;border-bottom:1px solid #eee}td.n{text-align:right;"
         "font-variant-numeric:tabular-nums}\n"
         "</style></head><body>\n<h1>" +
-        escaped(result.title) + "</h1>\n<p>" + escaped(result.scene) + " &#183; seed " +
-        std::to_string(result.seed);
+        io::xml_escaped(result.title) + "</h1>\n<p>" + io::xml_escaped(result.scene) +
+        " &#183; seed " + std::to_string(result.seed);
     if (result.horizon_s > 0) {
         out += " &#183; " + label(result.horizon_s) + " s each";
     }
@@ -260,17 +239,17 @@ std::string sweep_page(const SweepResult& result) {
     }
     out += "</main>\n<table><tr>";
     for (const scene::Setting& s : result.points[0].settings) {
-        out += "<th>" + escaped(s.path) + "</th>";
+        out += "<th>" + io::xml_escaped(s.path) + "</th>";
     }
     out += "<th>measure</th><th>mean</th><th>&#177;</th><th>unit</th><th>replications</th></tr>\n";
     for (const std::size_t m : shown) {
         for (const SweepPoint& point : result.points) {
             out += "<tr>";
             for (const scene::Setting& s : point.settings) {
-                out += "<td>" + escaped(s.value) + "</td>";
+                out += "<td>" + io::xml_escaped(s.value) + "</td>";
             }
             const sim::Confidence& c = point.outcome.means[m];
-            out += "<td>" + escaped(result.measures[m].name) + "</td><td class='n'>" +
+            out += "<td>" + io::xml_escaped(result.measures[m].name) + "</td><td class='n'>" +
                    with_precision(c.mean, c.half_width) + "</td><td class='n'>" +
                    with_precision(c.half_width, c.half_width) + "</td><td>" +
                    result.measures[m].unit + "</td><td class='n'>" +

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "csv.h"
 #include "puppetri/io/json_writer.h"
 #include "puppetri/sim/tally.h"
 
@@ -35,17 +36,6 @@ std::string exact(double x) {
         }
     }
     return text;
-}
-
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) {
-        return text;
-    }
-    std::string out = "\"";
-    for (const char c : text) {
-        out += c == '"' ? "\"\"" : std::string(1, c);
-    }
-    return out + "\"";
 }
 
 bool all_zero(const SweepResult& result, std::size_t column) {
@@ -87,18 +77,18 @@ std::string sweep_csv(const SweepResult& result) {
     std::string out;
     if (!result.points.empty()) {
         for (const scene::Setting& s : result.points[0].settings) {
-            out += quoted(s.path) + ",";
+            out += csv_field(s.path) + ",";
         }
     }
     out += "measure,unit,replications,failed,mean,half_width,deviation,least,most\n";
     for (const SweepPoint& point : result.points) {
         std::string parameters;
         for (const scene::Setting& s : point.settings) {
-            parameters += quoted(s.value) + ",";
+            parameters += csv_field(s.value) + ",";
         }
         for (std::size_t m = 0; m < result.measures.size(); ++m) {
             const sim::Tally t = tally_of(point.outcome, m);
-            out += parameters + quoted(result.measures[m].name) + "," + result.measures[m].unit +
+            out += parameters + csv_field(result.measures[m].name) + "," + result.measures[m].unit +
                    "," + std::to_string(t.count()) + "," +
                    std::to_string(point.outcome.failures.size()) + "," +
                    exact(point.outcome.means[m].mean) + "," +

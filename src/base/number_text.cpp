@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "big_number.h"
 #include "puppetri/base/bit_cast.h"
+#include "puppetri/base/natural.h"
 #include "puppetri/base/require.h"
 #include "puppetri/base/text.h"
 
@@ -45,25 +45,25 @@ struct Decimal {
 Decimal shortest(double size) {
     const Binary x = split(size);
     const bool even = x.mantissa % 2 == 0;
-    BigNumber r(x.mantissa);
-    BigNumber s(1);
-    BigNumber below(1);
-    BigNumber above(1);
+    Natural r(x.mantissa);
+    Natural s(1);
+    Natural below(1);
+    Natural above(1);
     const unsigned wider = x.lowest_of_its_power ? 1 : 0;
-    r.shift_left(1 + wider);
-    s.shift_left(1 + wider);
-    above.shift_left(wider);
+    r <<= 1 + wider;
+    s <<= 1 + wider;
+    above <<= wider;
     if (x.exponent >= 0) {
         const unsigned bits = static_cast<unsigned>(x.exponent);
-        r.shift_left(bits);
-        below.shift_left(bits);
-        above.shift_left(bits);
+        r <<= bits;
+        below <<= bits;
+        above <<= bits;
     } else {
-        s.shift_left(static_cast<unsigned>(-x.exponent));
+        s <<= static_cast<unsigned>(-x.exponent);
     }
     const auto overshoots = [&] {  // r + above beyond s
-        BigNumber sum = r;
-        sum.add(above);
+        Natural sum = r;
+        sum += above;
         return even ? sum >= s : sum > s;
     };
     // 10^(point - 1) <= value < 10^point: an estimate that is at most a little low, then corrected.
@@ -79,16 +79,16 @@ Decimal shortest(double size) {
         above.multiply_power_of_ten(up);
     }
     while (overshoots()) {
-        s.multiply_add(10, 0);
+        s *= 10;
         ++decimal.point;
     }
     for (;;) {
-        r.multiply_add(10, 0);
-        below.multiply_add(10, 0);
-        above.multiply_add(10, 0);
+        r *= 10;
+        below *= 10;
+        above *= 10;
         char digit = '0';
         while (r >= s) {
-            r.subtract(s);
+            r -= s;
             ++digit;
         }
         const bool low = even ? r <= below : r < below;
@@ -97,8 +97,8 @@ Decimal shortest(double size) {
             decimal.digits += digit;
             continue;
         }
-        BigNumber twice = r;
-        twice.shift_left(1);
+        Natural twice = r;
+        twice <<= 1;
         const bool up = high && (!low || twice > s || (twice == s && (digit - '0') % 2 != 0));
         decimal.digits += static_cast<char>(up ? digit + 1 : digit);
         return decimal;
@@ -124,19 +124,6 @@ std::string with_point(std::string digits, unsigned decimals) {
         digits.insert(digits.size() - decimals, 1, '.');
     }
     return digits;
-}
-
-std::string to_digits(BigNumber n) {
-    std::string digits;
-    while (!n.zero()) {
-        std::uint32_t part = n.divide(1'000'000'000);
-        for (int i = 0; i < 9 && (part != 0 || !n.zero()); ++i) {
-            digits += static_cast<char>('0' + part % 10);
-            part /= 10;
-        }
-    }
-    std::reverse(digits.begin(), digits.end());
-    return digits.empty() ? "0" : digits;
 }
 
 }  // namespace
@@ -179,10 +166,10 @@ std::string number_to_text_fixed(double x, unsigned decimals) {
         return *name;
     }
     const Binary b = split(std::fabs(x));
-    BigNumber n(b.mantissa);
+    Natural n(b.mantissa);
     n.multiply_power_of_ten(decimals);
     if (b.exponent >= 0) {
-        n.shift_left(static_cast<unsigned>(b.exponent));
+        n <<= static_cast<unsigned>(b.exponent);
     }
     bool half = false;
     bool more = false;
@@ -191,10 +178,10 @@ std::string number_to_text_fixed(double x, unsigned decimals) {
         half = n.divide(2) != 0;
     }
     if (half && (more || n.odd())) {
-        n.add(BigNumber(1));
+        n += 1;
     }
     const bool negative = x < 0 && !n.zero();
-    return (negative ? "-" : "") + with_point(to_digits(std::move(n)), decimals);
+    return (negative ? "-" : "") + with_point(n.decimal(), decimals);
 }
 
 std::string decimal_to_text(std::int64_t numerator, unsigned decimals) {
@@ -270,7 +257,7 @@ double power_of_two(int k) {  // -1022 <= k <= 1023
 
 // n / d, both above 0, as the nearest double: a quotient of 53 bits (fewer for subnormals) by
 // shifting and subtracting.
-std::optional<double> nearest_quotient(BigNumber n, BigNumber d) {
+std::optional<double> nearest_quotient(Natural n, Natural d) {
     int exponent = static_cast<int>(n.bit_count()) - static_cast<int>(d.bit_count());
     if (exponent > 1025) {
         return std::nullopt;
@@ -278,9 +265,9 @@ std::optional<double> nearest_quotient(BigNumber n, BigNumber d) {
     if (exponent < -1080) {
         return 0.0;
     }
-    (exponent >= 0 ? d : n).shift_left(static_cast<unsigned>(exponent >= 0 ? exponent : -exponent));
+    (exponent >= 0 ? d : n) <<= static_cast<unsigned>(exponent >= 0 ? exponent : -exponent);
     if (n < d) {
-        n.shift_left(1);
+        n <<= 1;
         --exponent;
     }
     // Now 1 <= n/d < 2 and the value is n/d * 2^exponent.
@@ -292,10 +279,10 @@ std::optional<double> nearest_quotient(BigNumber n, BigNumber d) {
     for (int i = 0; i < bits; ++i) {
         quotient <<= 1;
         if (n >= d) {
-            n.subtract(d);
+            n -= d;
             quotient |= 1;
         }
-        n.shift_left(1);
+        n <<= 1;
     }
     // n / d is now the rest in units of half of the last place (of bits == 0: the value itself is
     // that).
@@ -343,15 +330,12 @@ std::optional<double> parse_number(std::string_view text) {
     if (magnitude < -330) {
         return sign * 0.0;
     }
-    BigNumber n(0);
+    Natural n;
     for (const char c : w->digits) {
-        if (n.zero()) {
-            n = BigNumber(static_cast<std::uint64_t>(c - '0'));
-        } else {
-            n.multiply_add(10, static_cast<std::uint32_t>(c - '0'));
-        }
+        n *= 10;
+        n += static_cast<std::uint64_t>(c - '0');
     }
-    BigNumber d(1);
+    Natural d(1);
     if (w->exponent >= 0) {
         n.multiply_power_of_ten(static_cast<unsigned>(w->exponent));
     } else {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 
+#include "finger_names.h"
 #include "measure_skin.h"
 #include "puppetri/base/require.h"
 #include "puppetri/figure/humanoid.h"
@@ -388,18 +389,12 @@ class Fit {
     }
 
     void measure_fingers(int side, const HumanoidMeasures::Arm& usual) {
-        static constexpr std::array<std::array<const char*, 3>, 5> kFingers{
-            {{"ThumbMetacarpal", "ThumbProximal", "ThumbDistal"},
-             {"IndexProximal", "IndexIntermediate", "IndexDistal"},
-             {"MiddleProximal", "MiddleIntermediate", "MiddleDistal"},
-             {"RingProximal", "RingIntermediate", "RingDistal"},
-             {"LittleProximal", "LittleIntermediate", "LittleDistal"}}};
         HumanoidMeasures::Arm& arm = m_.arms[static_cast<std::size_t>(side)];
         const double scale = arm.hand_m / usual.hand_m;
         for (std::size_t f = 0; f < 5; ++f) {
             Vec3 at = place(named(side, "Hand"));
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::string bone = named(side, kFingers[f][k]);
+                const std::string bone = named(side, kFingerNames[f * 3 + k]);
                 Vec3& offset = arm.fingers[f * 3 + k];
                 offset = usual.fingers[f * 3 + k] * scale;
                 if (has(bone)) {

@@ -2,17 +2,12 @@
 // The joints of a humanoid, their limits and hand poses; lengths come from the measures.
 #include "puppetri/figure/humanoid.h"
 
+#include "finger_names.h"
 #include "puppetri/base/require.h"
 #include "puppetri/math/rotation.h"
 
 namespace puppetri::figure {
 namespace {
-
-constexpr std::array<const char*, kFingerJointCount> kFingerNames{
-    "ThumbMetacarpal",   "ThumbProximal",      "ThumbDistal",      "IndexProximal",
-    "IndexIntermediate", "IndexDistal",        "MiddleProximal",   "MiddleIntermediate",
-    "MiddleDistal",      "RingProximal",       "RingIntermediate", "RingDistal",
-    "LittleProximal",    "LittleIntermediate", "LittleDistal"};
 
 class Builder {
  public:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "finger_names.h"
 #include "puppetri/base/require.h"
 
 namespace puppetri::figure {
@@ -87,15 +88,9 @@ SkinWeights::SkinWeights(const Skeleton& skeleton, const Landmarks& marks) : mar
         side.lower_leg = index(lr + "LowerLeg");
         side.foot = index(lr + "Foot");
         side.toes = index(lr + "Toes");
-        static constexpr std::array<std::array<const char*, 3>, 5> kFingers{
-            {{"ThumbMetacarpal", "ThumbProximal", "ThumbDistal"},
-             {"IndexProximal", "IndexIntermediate", "IndexDistal"},
-             {"MiddleProximal", "MiddleIntermediate", "MiddleDistal"},
-             {"RingProximal", "RingIntermediate", "RingDistal"},
-             {"LittleProximal", "LittleIntermediate", "LittleDistal"}}};
         for (std::size_t f = 0; f < 5; ++f) {
             for (std::size_t k = 0; k < 3; ++k) {
-                side.fingers[f][k] = index(lr + kFingers[f][k]);
+                side.fingers[f][k] = index(lr + kFingerNames[f * 3 + k]);
             }
         }
     }

@@ -107,17 +107,6 @@ bool is_temporal(TermOp op) {
            op == TermOp::kUntil;
 }
 
-// Elements only; text between them is refused by the caller.
-std::vector<pugi::xml_node> elements(pugi::xml_node node) {
-    std::vector<pugi::xml_node> out;
-    for (const pugi::xml_node c : node.children()) {
-        if (c.type() == pugi::node_element) {
-            out.push_back(c);
-        }
-    }
-    return out;
-}
-
 class Reader {
  public:
     Reader(const XmlText& text, const NetFile& net, Defects& defects)

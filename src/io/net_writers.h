@@ -16,7 +16,4 @@ std::string lola_text(const NetFile& file, Diagnostics& notes);
 std::string graphviz_text(const NetFile& file, Diagnostics& notes);
 std::string scene_text(const NetFile& file, Diagnostics& notes);
 
-// &, <, >, quotes and what XML would change, as references.
-std::string xml_escaped(std::string_view text);
-
 }  // namespace puppetri::io

@@ -10,6 +10,7 @@
 #include "net_features.h"
 #include "net_writers.h"
 #include "puppetri/base/text.h"
+#include "puppetri/io/xml_escaped.h"
 
 namespace puppetri::io {
 namespace {

@@ -8,16 +8,6 @@ namespace {
 
 constexpr std::int64_t kMostTokens = 0x3FFF'FFFF;
 
-std::vector<pugi::xml_node> elements(pugi::xml_node node) {
-    std::vector<pugi::xml_node> out;
-    for (const pugi::xml_node c : node.children()) {
-        if (c.type() == pugi::node_element) {
-            out.push_back(c);
-        }
-    }
-    return out;
-}
-
 }  // namespace
 
 void normalize(ColourBag& bag) {
@@ -178,16 +168,17 @@ std::optional<std::uint32_t> ColourTerms::read_bag(pugi::xml_node node, std::uin
     }
     if (name == "all") {
         const std::vector<pugi::xml_node> inside = elements(node);
-        const std::optional<std::uint32_t> sort =
-            inside.size() == 1 ? colours_.sort_of(inside[0], element_) : std::nullopt;
         if (inside.size() != 1) {
             error("wrong-operands", node, "<all> wants one sort", "name the sort");
+            return std::nullopt;
         }
-        return sort ? std::optional(push({.op = ColourTerm::kAll,
-                                          .sort = *sort,
-                                          .single = colours_.sort(*sort).size == 1},
-                                         {}))
-                    : std::nullopt;
+        if (const auto sort = colours_.sort_of(inside[0], element_)) {
+            return push({.op = ColourTerm::kAll,
+                         .sort = *sort,
+                         .single = colours_.sort(*sort).size == 1},
+                        {});
+        }
+        return std::nullopt;
     }
     if (name == "successor" || name == "predecessor") {
         const auto parts = subterms(node, 1, 1);

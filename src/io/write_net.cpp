@@ -26,34 +26,6 @@ std::string lower_case(std::string_view text) {
 
 }  // namespace
 
-std::string xml_escaped(std::string_view text) {
-    std::string out;
-    out.reserve(text.size());
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                if (static_cast<unsigned char>(c) < 0x20) {
-                    out += "&#" + std::to_string(static_cast<int>(c)) + ";";
-                } else {
-                    out += c;
-                }
-        }
-    }
-    return out;
-}
-
 std::optional<NetFormat> written_format_named(std::string_view name) {
     static constexpr std::array<std::pair<std::string_view, NetFormat>, 10> kNames = {{
         {"pnml", NetFormat::kPnml},

@@ -83,6 +83,16 @@ pugi::xml_node child(pugi::xml_node of, std::string_view name) {
     return {};
 }
 
+std::vector<pugi::xml_node> elements(pugi::xml_node of) {
+    std::vector<pugi::xml_node> out;
+    for (const pugi::xml_node c : of.children()) {
+        if (c.type() == pugi::node_element) {
+            out.push_back(c);
+        }
+    }
+    return out;
+}
+
 std::string text_of(pugi::xml_node node) {
     std::string out;
     for (const pugi::xml_node c : node.children()) {

@@ -18,6 +18,8 @@ namespace puppetri::io {
 std::string_view local_name(pugi::xml_node node);
 // The first child element of that local name, or an empty node.
 pugi::xml_node child(pugi::xml_node of, std::string_view name);
+// All child elements; text and comments between them are left out.
+std::vector<pugi::xml_node> elements(pugi::xml_node of);
 // All text directly inside, without the space around it.
 std::string text_of(pugi::xml_node node);
 // The element as it was written, but for space between elements.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "build.h"
+#include "puppetri/lang/decimal.h"
 #include "puppetri/lang/parse.h"
 #include "puppetri/lang/units.h"
 
@@ -178,36 +179,7 @@ Path Builder::path(std::uint32_t node) {
 
 void Builder::number(std::uint32_t node, Expr& out) {
     const Token& token = first(node);
-    std::int64_t digits = 0;
-    int exponent = 0;
-    bool fits = true, fraction = false;
-    const std::string_view written = text(token);
-    for (std::size_t i = 0; i < written.size(); ++i) {
-        const char c = written[i];
-        if (c == '.') {
-            fraction = true;
-        } else if (c == 'e' || c == 'E') {
-            int power = 0;
-            bool negative = false;
-            for (const char d : written.substr(i + 1)) {
-                if (d == '-' || d == '+') {
-                    negative = d == '-';
-                } else {
-                    power = std::min(power * 10 + (d - '0'), 1000);
-                }
-            }
-            exponent += negative ? -power : power;
-            break;
-        } else {
-            fits = fits && digits <= (INT64_MAX - (c - '0')) / 10;
-            digits = fits ? digits * 10 + (c - '0') : digits;
-            exponent -= fraction ? 1 : 0;
-        }
-    }
-    const std::optional<Rational> scale = power(Rational{10}, exponent);
-    const std::optional<Rational> value =
-        fits && digits == 0 ? Rational{0}
-                            : (fits && scale ? multiply(Rational{digits}, *scale) : std::nullopt);
+    const std::optional<Rational> value = parse_decimal(text(token));
     if (!value) {
         report_.error(span(token), "number-out-of-range", element,
                       "this number has too many digits to be kept exactly",

@@ -284,19 +284,7 @@ class Complaint {
     }
 
     static bool is_operator(Kind kind) {
-        switch (kind) {
-            case Kind::kAnd:
-            case Kind::kOr:
-            case Kind::kNot:
-            case Kind::kImplies:
-            case Kind::kMod:
-            case Kind::kDiv:
-            case Kind::kWeak:
-            case Kind::kRelease:
-                return true;
-            default:
-                return false;
-        }
+        return is_word_operator(kind) || kind == Kind::kWeak || kind == Kind::kRelease;
     }
 
     static std::string sample(const std::vector<std::string>& words) {

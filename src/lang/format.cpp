@@ -188,24 +188,11 @@ class Formatter {
         return is_word(kind) || kind == Kind::kNumber || kind == Kind::kString ||
                kind == Kind::kQuotedName || kind == Kind::kCloseParen || kind == Kind::kCloseList;
     }
-    static bool word_operator(Kind kind) {
-        switch (kind) {
-            case Kind::kAnd:
-            case Kind::kOr:
-            case Kind::kNot:
-            case Kind::kImplies:
-            case Kind::kMod:
-            case Kind::kDiv:
-                return true;
-            default:
-                return false;
-        }
-    }
     // A minus or plus before an operand, not between two. After a word that may be a clause
     // (`priority -1`) the author's spacing tells.
     bool is_sign(std::size_t i) const {
         if (i == 0 || pieces_[i].statement_start || !ends_operand(pieces_[i - 1].kind) ||
-            word_operator(pieces_[i - 1].kind)) {
+            is_word_operator(pieces_[i - 1].kind)) {
             return true;
         }
         return is_word(pieces_[i - 1].kind) && pieces_[i].space_before && i + 1 < pieces_.size() &&
@@ -256,7 +243,7 @@ class Formatter {
             case Kind::kOpenList:
                 return is_word(a.kind) || a.kind == Kind::kQuotedName ? b.space_before : true;
             case Kind::kOpenParen:
-                if (word_operator(a.kind)) {
+                if (is_word_operator(a.kind)) {
                     return true;
                 }
                 return is_word(a.kind) || a.kind == Kind::kQuotedName || a.kind == Kind::kCloseList

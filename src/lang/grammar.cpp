@@ -78,17 +78,7 @@ struct tok : terminal {
 struct word : terminal {
     using rule_t = word;
     static bool takes(Kind kind) {
-        switch (kind) {
-            case Kind::kAnd:
-            case Kind::kOr:
-            case Kind::kNot:
-            case Kind::kImplies:
-            case Kind::kMod:
-            case Kind::kDiv:
-                return false;
-            default:
-                return is_word(kind) || kind == Kind::kQuotedName;
-        }
+        return (is_word(kind) && !is_word_operator(kind)) || kind == Kind::kQuotedName;
     }
     PUP_MATCH {
         if (!in.empty() && takes(reader.tokens[reader.at(in)].kind)) {

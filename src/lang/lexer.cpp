@@ -57,7 +57,8 @@ struct Lexer {
         if (out.list.empty()) {
             return false;
         }
-        switch (out.list.back().kind) {
+        const Kind last = out.list.back().kind;
+        switch (last) {
             case Kind::kOpenParen:
             case Kind::kOpenList:
             case Kind::kComma:
@@ -76,12 +77,6 @@ struct Lexer {
             case Kind::kQuestion:
             case Kind::kAssign:
             case Kind::kDots:
-            case Kind::kAnd:
-            case Kind::kOr:
-            case Kind::kNot:
-            case Kind::kImplies:
-            case Kind::kMod:
-            case Kind::kDiv:
             case Kind::kWhen:
             case Kind::kNever:
             case Kind::kAlways:
@@ -106,7 +101,7 @@ struct Lexer {
             case Kind::kOpenBlock:
                 return true;
             default:
-                return false;
+                return is_word_operator(last);
         }
     }
 };

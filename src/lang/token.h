@@ -204,6 +204,20 @@ static_assert(static_cast<std::size_t>(Kind::kYes) == kFirstKeyword + kKeywords.
 
 constexpr bool is_keyword(Kind kind) { return static_cast<std::uint8_t>(kind) >= kFirstKeyword; }
 constexpr bool is_word(Kind kind) { return is_keyword(kind) || kind == Kind::kWord; }
+// `and`, `or`, `not`, `implies`, `mod`, `div`.
+constexpr bool is_word_operator(Kind kind) {
+    switch (kind) {
+        case Kind::kAnd:
+        case Kind::kOr:
+        case Kind::kNot:
+        case Kind::kImplies:
+        case Kind::kMod:
+        case Kind::kDiv:
+            return true;
+        default:
+            return false;
+    }
+}
 constexpr std::string_view keyword_text(Kind kind) {
     return kKeywords[static_cast<std::size_t>(kind) - kFirstKeyword];
 }

@@ -6,6 +6,7 @@
 
 #include "puppetri/base/bit_cast.h"
 #include "puppetri/base/hash.h"
+#include "puppetri/base/varint.h"
 #include "puppetri/net/state.h"
 #include "puppetri/net/tables.h"
 
@@ -19,16 +20,8 @@ class Writer {
  public:
     explicit Writer(std::vector<std::uint8_t>& out) : out_(out) {}
     void byte(std::uint8_t b) { out_.push_back(b); }
-    void count(std::uint64_t x) {
-        while (x >= 0x80) {
-            out_.push_back(static_cast<std::uint8_t>(x | 0x80));
-            x >>= 7;
-        }
-        out_.push_back(static_cast<std::uint8_t>(x));
-    }
-    void number(std::int64_t x) {
-        count((static_cast<std::uint64_t>(x) << 1) ^ static_cast<std::uint64_t>(x >> 63));
-    }
+    void count(std::uint64_t x) { put_varint(out_, x); }
+    void number(std::int64_t x) { count(zigzag(x)); }
     void word(std::uint64_t x) {
         for (int i = 0; i < 8; ++i) {
             out_.push_back(static_cast<std::uint8_t>(x >> (8 * i)));
@@ -88,10 +81,7 @@ class Reader {
     }
     // The number of items to come, each of at least one byte.
     std::uint32_t length() { return below(bytes_.size() - next_ + 1); }
-    std::int64_t number() {
-        const std::uint64_t x = count();
-        return static_cast<std::int64_t>((x >> 1) ^ (0 - (x & 1)));
-    }
+    std::int64_t number() { return unzigzag(count()); }
     // A time, written as its distance from `now`.
     std::int64_t time_from(std::int64_t now) {
         std::int64_t at = 0;

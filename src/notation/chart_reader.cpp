@@ -6,6 +6,7 @@
 
 #include "chart.h"
 #include "make.h"
+#include "puppetri/lang/decimal.h"
 
 namespace puppetri::notation::chart {
 namespace {
@@ -523,27 +524,10 @@ class Reader {
 
     // 2s, .5s, 200ms
     static bool time(std::string_view text, lang::Span where, lang::Expr& out) {
-        std::int64_t digits = 0, scale = 1;
-        std::size_t i = 0;
-        bool point = false, any = false;
-        for (; i < text.size() && ((text[i] >= '0' && text[i] <= '9') || text[i] == '.'); ++i) {
-            if (text[i] == '.') {
-                if (point) {
-                    return false;
-                }
-                point = true;
-                continue;
-            }
-            if (digits > 100'000'000'000) {
-                return false;
-            }
-            any = true;
-            digits = 10 * digits + (text[i] - '0');
-            scale *= point ? 10 : 1;
-        }
-        const std::string_view unit = text.substr(i);
-        const auto number = make_rational(digits, scale);
-        if (!any || !number || (unit != "s" && unit != "ms")) {
+        const std::size_t split = std::min(text.find_first_not_of("0123456789."), text.size());
+        const std::string_view unit = text.substr(split);
+        const auto number = lang::parse_decimal(text.substr(0, split));
+        if (!number || (unit != "s" && unit != "ms")) {
             return false;
         }
         out = make_number(*number, where, std::string(unit));

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "puppetri/base/text.h"
+#include "puppetri/lang/decimal.h"
 #include "tookima.h"
 
 namespace puppetri::notation::tookima {
@@ -184,23 +185,12 @@ class Parser {
         const Token t = token();
         if (t.sort == Sort::kNumber) {
             ++at_;
-            std::int64_t digits = 0, scale = 1;
-            bool point = false, good = t.text.size() <= 16;
-            for (const char c : t.text) {
-                if (c == '.') {
-                    good = good && !point;
-                    point = true;
-                } else if (c != '-' && good) {
-                    digits = digits * 10 + (c - '0');
-                    scale *= point ? 10 : 1;
-                }
-            }
-            const auto value = make_rational(t.text[0] == '-' ? -digits : digits, scale);
-            if (good && value) {
-                return *value;
+            const bool negative = t.text.starts_with('-');
+            if (const auto value = lang::parse_decimal(t.text.substr(negative ? 1 : 0))) {
+                return negative ? negate(*value) : *value;
             }
         }
-        error("syntax", t.span, "a number of at most 15 digits is wanted here",
+        error("syntax", t.span, "a number of at most 18 digits is wanted here",
               "write " + std::string(form));
         return std::nullopt;
     }

@@ -3,33 +3,12 @@
 
 #include <algorithm>
 
+#include "puppetri/base/varint.h"
 #include "puppetri/net/tables.h"
 
 namespace puppetri::proof {
 
 using namespace net;
-
-namespace {
-
-void write_count(std::uint64_t x, std::vector<std::uint8_t>& out) {
-    for (; x >= 0x80; x >>= 7) {
-        out.push_back(static_cast<std::uint8_t>(x | 0x80));
-    }
-    out.push_back(static_cast<std::uint8_t>(x));
-}
-
-std::uint64_t read_count(std::span<const std::uint8_t> bytes, std::size_t& at) {
-    std::uint64_t x = 0;
-    for (int shift = 0;; shift += 7) {
-        const std::uint8_t b = bytes[at++];
-        x |= std::uint64_t{b & 0x7Fu} << shift;
-        if (b < 0x80) {
-            return x;
-        }
-    }
-}
-
-}  // namespace
 
 ClassBuilder::ClassBuilder(const GraphRequest& request, bool observed)
     : TimedBuilder(request, ClockForm::kClasses, "state classes"), observed_(observed) {
@@ -157,10 +136,10 @@ void ClassBuilder::enter(std::uint32_t state) {
     std::size_t at = 0;
     states_->decode(state, nullptr, &at);
     const std::span<const std::uint8_t> bytes = states_->store[state];
-    zone_ = Zone(static_cast<std::uint32_t>(read_count(bytes, at)));
+    zone_ = Zone(static_cast<std::uint32_t>(get_varint(bytes, at)));
     for (std::uint32_t i = 0; i <= zone_.variables(); ++i) {
         for (std::uint32_t j = 0; j <= zone_.variables(); ++j) {
-            zone_.set(i, j, states_->codec.time(static_cast<std::uint32_t>(read_count(bytes, at))));
+            zone_.set(i, j, states_->codec.time(static_cast<std::uint32_t>(get_varint(bytes, at))));
         }
     }
 }
@@ -312,9 +291,9 @@ bool ClassBuilder::encode(Driver& driver, const Driver::Step& step,
         return false;
     }
     states_->encode(driver, out, &variables);
-    write_count(track_.zone.variables(), out);
+    put_varint(out, track_.zone.variables());
     for (const std::int64_t b : track_.zone.bounds()) {
-        write_count(states_->codec.intern(b), out);
+        put_varint(out, states_->codec.intern(b));
     }
     if (mark_) {
         out.push_back(kMark);

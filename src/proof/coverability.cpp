@@ -17,7 +17,6 @@ namespace puppetri::proof {
 
 namespace {
 
-constexpr std::uint64_t kPivotsPerLook = 40;
 constexpr double kStructuralShare = 0.2;  // of the budget's seconds
 
 // Some y >= 1 with y C <= 0: then y m <= y m0 for ever. With sums that only fall the net is bounded
@@ -37,15 +36,7 @@ bool has_falling_sum(const PlainNet& net, const Budget& budget) {
     Budget share = budget;
     share.seconds = budget.seconds * kStructuralShare;
     Meter meter(share, "sub-invariant");
-    for (std::uint64_t round = 0;; ++round) {
-        const LinearProgram::Answer answer = program.solve(kPivotsPerLook);
-        if (answer != LinearProgram::Answer::kGaveUp) {
-            return answer == LinearProgram::Answer::kFeasible;
-        }
-        if (program.overflowed() || meter.look(round, 0, 0, 0) != Ended::kDone) {
-            return false;
-        }
-    }
+    return is_feasible(program, meter);
 }
 
 class PumpSearch {

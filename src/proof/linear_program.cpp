@@ -13,6 +13,7 @@
 #include <limits>
 #include <numeric>
 
+#include "puppetri/proof/budget.h"
 #include "wide_integer.h"
 
 namespace puppetri::proof {
@@ -547,6 +548,19 @@ LinearProgram::Value LinearProgram::value(std::uint32_t variable) const {
 LinearProgram::Answer LinearProgram::maximize(std::uint32_t variable, std::uint64_t pivots,
                                               Value& best) {
     return tableau_->maximize(variable, pivots, best);
+}
+
+bool is_feasible(LinearProgram& program, Meter& meter) {
+    constexpr std::uint64_t kPivotsPerLook = 40;
+    for (std::uint64_t round = 0;; ++round) {
+        const LinearProgram::Answer answer = program.solve(kPivotsPerLook);
+        if (answer != LinearProgram::Answer::kGaveUp) {
+            return answer == LinearProgram::Answer::kFeasible;
+        }
+        if (program.overflowed() || meter.look(round, 0, 0, 0) != Ended::kDone) {
+            return false;
+        }
+    }
 }
 
 }  // namespace puppetri::proof

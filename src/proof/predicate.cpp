@@ -350,56 +350,35 @@ bool Predicate::holds(const PlainNet& net, std::span<const std::uint32_t> markin
 Predicate simplified(const Predicate& p, const PlainNet& net,
                      std::span<const std::uint32_t> upper) {
     PredicateBuilder builder;
-    std::vector<std::uint32_t> made(p.nodes.size()), list;
     const auto never = [&](std::uint32_t t) {
         const auto too_much = [&](const net::Weighted& w) { return w.weight > upper[w.place]; };
         const auto takes = net.takes.row(t), reads = net.reads.row(t);
         return std::any_of(takes.begin(), takes.end(), too_much) ||
                std::any_of(reads.begin(), reads.end(), too_much);
     };
-    for (std::size_t i = 0; i < p.nodes.size(); ++i) {
-        const Predicate::Node& node = p.nodes[i];
-        list.assign(p.list.begin() + node.first, p.list.begin() + node.first + node.count);
-        switch (node.op) {
-            case Op::kFalse:
-            case Op::kTrue:
-                made[i] = builder.constant(node.op == Op::kTrue);
-                break;
-            case Op::kAtMost:
-            case Op::kAtLeast: {
-                const LinearSum& sum = p.sums[node.index];
-                std::int64_t least = 0, most = 0;
-                for (const LinearSum::Term& term : sum.terms) {
-                    (term.factor < 0 ? least : most) +=
-                        term.factor * std::int64_t{upper[term.place]};
-                }
-                const bool at_most = node.op == Op::kAtMost;
-                if (at_most ? most <= node.limit : least >= node.limit) {
-                    made[i] = builder.constant(true);
-                } else if (at_most ? least > node.limit : most < node.limit) {
-                    made[i] = builder.constant(false);
-                } else {
-                    made[i] = at_most ? builder.at_most(sum, node.limit)
-                                      : builder.at_least(sum, node.limit);
-                }
-                break;
+    const std::uint32_t root = rebuild(
+        p, builder, [&](const Predicate::Node& node, std::vector<std::uint32_t>& transitions) {
+            if (node.op == Op::kEnabled || node.op == Op::kNoneEnabled) {
+                transitions.erase(std::remove_if(transitions.begin(), transitions.end(), never),
+                                  transitions.end());
+                return node.op == Op::kEnabled ? builder.enabled(transitions)
+                                               : builder.none_enabled(transitions);
             }
-            case Op::kEnabled:
-            case Op::kNoneEnabled:
-                list.erase(std::remove_if(list.begin(), list.end(), never), list.end());
-                made[i] =
-                    node.op == Op::kEnabled ? builder.enabled(list) : builder.none_enabled(list);
-                break;
-            case Op::kAnd:
-            case Op::kOr:
-                for (std::uint32_t& child : list) {
-                    child = made[child];
-                }
-                made[i] = node.op == Op::kAnd ? builder.all_of(list) : builder.any_of(list);
-                break;
-        }
-    }
-    return builder.finish(made.back());
+            const LinearSum& sum = p.sums[node.index];
+            std::int64_t least = 0, most = 0;
+            for (const LinearSum::Term& term : sum.terms) {
+                (term.factor < 0 ? least : most) += term.factor * std::int64_t{upper[term.place]};
+            }
+            const bool at_most = node.op == Op::kAtMost;
+            if (at_most ? most <= node.limit : least >= node.limit) {
+                return builder.constant(true);
+            }
+            if (at_most ? least > node.limit : most < node.limit) {
+                return builder.constant(false);
+            }
+            return at_most ? builder.at_most(sum, node.limit) : builder.at_least(sum, node.limit);
+        });
+    return builder.finish(root);
 }
 
 }  // namespace puppetri::proof

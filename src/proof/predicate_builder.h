@@ -36,6 +36,29 @@ class PredicateBuilder {
     Predicate made_;
 };
 
+// Node by node into the builder: a node about tokens or transitions becomes what `leaf(node, list)`
+// makes of it (`list` is a copy of its transitions), all others stay. Gives  what the root became.
+template <class Leaf>
+std::uint32_t rebuild(const Predicate& p, PredicateBuilder& builder, const Leaf& leaf) {
+    using Op = Predicate::Op;
+    std::vector<std::uint32_t> made(p.nodes.size()), list;
+    for (std::size_t i = 0; i < p.nodes.size(); ++i) {
+        const Predicate::Node& node = p.nodes[i];
+        list.assign(p.list.begin() + node.first, p.list.begin() + node.first + node.count);
+        if (node.op == Op::kFalse || node.op == Op::kTrue) {
+            made[i] = builder.constant(node.op == Op::kTrue);
+        } else if (node.op == Op::kAnd || node.op == Op::kOr) {
+            for (std::uint32_t& child : list) {
+                child = made[child];
+            }
+            made[i] = node.op == Op::kAnd ? builder.all_of(list) : builder.any_of(list);
+        } else {
+            made[i] = leaf(node, list);
+        }
+    }
+    return made.back();
+}
+
 // Sorts by place, adds up equal places, drops zeros.
 void normalize(LinearSum& sum);
 

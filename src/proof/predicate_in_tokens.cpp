@@ -33,46 +33,24 @@ Predicate told_in_tokens(const Predicate& p, const PlainNet& net,
         }
         return negated ? builder.any_of(parts) : builder.all_of(parts);
     };
-    std::vector<std::uint32_t> made(p.nodes.size());
-    for (std::size_t i = 0; i < p.nodes.size(); ++i) {
-        const Predicate::Node& node = p.nodes[i];
-        std::vector<std::uint32_t> list(p.list.begin() + node.first,
-                                        p.list.begin() + node.first + node.count);
-        switch (node.op) {
-            case Op::kFalse:
-            case Op::kTrue:
-                made[i] = builder.constant(node.op == Op::kTrue);
-                break;
-            case Op::kAtMost:
-            case Op::kAtLeast: {
+    const std::uint32_t root = rebuild(
+        p, builder, [&](const Predicate::Node& node, std::vector<std::uint32_t>& transitions) {
+            if (node.op == Op::kAtMost || node.op == Op::kAtLeast) {
                 LinearSum sum = p.sums[node.index];
                 for (LinearSum::Term& term : sum.terms) {
                     term.place = moved(term.place);
                 }
                 normalize(sum);
-                made[i] = node.op == Op::kAtMost ? builder.at_most(std::move(sum), node.limit)
-                                                 : builder.at_least(std::move(sum), node.limit);
-                break;
+                return node.op == Op::kAtMost ? builder.at_most(std::move(sum), node.limit)
+                                              : builder.at_least(std::move(sum), node.limit);
             }
-            case Op::kEnabled:
-            case Op::kNoneEnabled: {
-                const bool none = node.op == Op::kNoneEnabled;
-                for (std::uint32_t& t : list) {
-                    t = enabled(t, none);
-                }
-                made[i] = none ? builder.all_of(list) : builder.any_of(list);
-                break;
+            const bool none = node.op == Op::kNoneEnabled;
+            for (std::uint32_t& t : transitions) {
+                t = enabled(t, none);
             }
-            case Op::kAnd:
-            case Op::kOr:
-                for (std::uint32_t& child : list) {
-                    child = made[child];
-                }
-                made[i] = node.op == Op::kAnd ? builder.all_of(list) : builder.any_of(list);
-                break;
-        }
-    }
-    return builder.finish(made.back());
+            return none ? builder.all_of(transitions) : builder.any_of(transitions);
+        });
+    return builder.finish(root);
 }
 
 std::vector<std::uint32_t> places_of(const Predicate& predicate, const PlainNet& net) {

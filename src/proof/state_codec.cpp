@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "puppetri/base/require.h"
+#include "puppetri/base/varint.h"
 #include "puppetri/net/timekeeper.h"
 
 namespace puppetri::proof {
@@ -21,16 +22,8 @@ class Writer {
  public:
     explicit Writer(std::vector<std::uint8_t>& out) : out_(out) {}
     void byte(unsigned b) { out_.push_back(static_cast<std::uint8_t>(b)); }
-    void count(std::uint64_t x) {
-        while (x >= 0x80) {
-            out_.push_back(static_cast<std::uint8_t>(x | 0x80));
-            x >>= 7;
-        }
-        out_.push_back(static_cast<std::uint8_t>(x));
-    }
-    void number(std::int64_t x) {
-        count((static_cast<std::uint64_t>(x) << 1) ^ static_cast<std::uint64_t>(x >> 63));
-    }
+    void count(std::uint64_t x) { put_varint(out_, x); }
+    void number(std::int64_t x) { count(zigzag(x)); }
 
  private:
     std::vector<std::uint8_t>& out_;
@@ -41,21 +34,9 @@ class Reader {
  public:
     explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
     std::uint8_t byte() { return bytes_[next_++]; }
-    std::uint64_t count() {
-        std::uint64_t x = 0;
-        for (int shift = 0;; shift += 7) {
-            const std::uint8_t b = bytes_[next_++];
-            x |= std::uint64_t{b & 0x7Fu} << shift;
-            if (b < 0x80) {
-                return x;
-            }
-        }
-    }
+    std::uint64_t count() { return get_varint(bytes_, next_); }
     std::uint32_t small() { return static_cast<std::uint32_t>(count()); }
-    std::int64_t number() {
-        const std::uint64_t x = count();
-        return static_cast<std::int64_t>((x >> 1) ^ (0 - (x & 1)));
-    }
+    std::int64_t number() { return unzigzag(count()); }
     std::size_t at() const { return next_; }
 
  private:

@@ -310,9 +310,7 @@ class Search {
             best.numerator > 1ll << 40) {
             return -1;
         }
-        const std::int64_t n = best.numerator, d = best.denominator;
-        const std::int64_t floor = n / d - (n % d != 0 && n < 0 ? 1 : 0);
-        return floor + program_.net().initial[p];
+        return best.floor() + program_.net().initial[p];
     }
 
     bool out_of_budget() {
@@ -638,10 +636,9 @@ std::optional<std::int64_t> upper_bound(const PlainNet& net, const LinearSum& su
         LinearProgram::Value best;
         const LinearProgram::Answer answer = program.program.maximize(goal, kPivotsPerLook, best);
         if (answer == LinearProgram::Answer::kFeasible) {
-            const std::int64_t n = best.numerator, d = best.denominator;
-            const std::int64_t floor = n / d - (n % d != 0 && n < 0 ? 1 : 0);
             std::int64_t bound = 0;
-            return fits(Wide{floor} + *initially, bound) ? std::optional(bound) : std::nullopt;
+            return fits(Wide{best.floor()} + *initially, bound) ? std::optional(bound)
+                                                                : std::nullopt;
         }
         if (answer != LinearProgram::Answer::kGaveUp || program.program.overflowed() ||
             meter.look(rounds, 0, 0, 0) != Ended::kDone) {

@@ -16,7 +16,6 @@ namespace puppetri::proof {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr std::uint64_t kPivotsPerLook = 40;
 
 // The input places of a transition, reads among them.
 template <class Visit>
@@ -115,15 +114,7 @@ bool has_positive_flow(const PlainNet& net, bool of_places, const Budget& budget
         program.at_most(sum, 0);
     }
     Meter meter(budget, "flows");
-    for (std::uint64_t round = 0;; ++round) {
-        const LinearProgram::Answer answer = program.solve(kPivotsPerLook);
-        if (answer != LinearProgram::Answer::kGaveUp) {
-            return answer == LinearProgram::Answer::kFeasible;
-        }
-        if (program.overflowed() || meter.look(round, 0, 0, 0) != Ended::kDone) {
-            return false;
-        }
-    }
+    return is_feasible(program, meter);
 }
 
 std::uint32_t count_clusters(const PlainNet& net) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "puppetri/base/varint.h"
 #include "puppetri/net/tables.h"
 
 namespace puppetri::proof {
@@ -25,13 +26,7 @@ State TimedGraph::States::decode(std::uint32_t state, std::uint32_t* outside,
     State s = codec.decode(bytes, &at);
     std::uint32_t events = 0;
     if (world.outside_events != 0 && world.outside_events != GraphRequest::kAnyNumber) {
-        for (int shift = 0; at < bytes.size(); shift += 7) {
-            const std::uint8_t b = bytes[at++];
-            events |= std::uint32_t{b & 0x7Fu} << shift;
-            if (b < 0x80) {
-                break;
-            }
-        }
+        events = static_cast<std::uint32_t>(get_varint(bytes, at));
     }
     if (outside != nullptr) {
         *outside = events;
@@ -46,11 +41,7 @@ void TimedGraph::States::encode(const Driver& driver, std::vector<std::uint8_t>&
                                 const std::unordered_map<std::int64_t, std::uint32_t>* variables) {
     codec.encode(driver.engine.state(), out, variables);
     if (world.outside_events != 0 && world.outside_events != GraphRequest::kAnyNumber) {
-        std::uint32_t x = driver.outside;
-        for (; x >= 0x80; x >>= 7) {
-            out.push_back(static_cast<std::uint8_t>(x | 0x80));
-        }
-        out.push_back(static_cast<std::uint8_t>(x));
+        put_varint(out, driver.outside);
     }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "puppetri/scene/events.h"
 
-#include "puppetri/base/rational.h"
 #include "puppetri/base/text.h"
+#include "puppetri/lang/decimal.h"
 #include "puppetri/lang/signature.h"
 #include "puppetri/lang/units.h"
 
@@ -33,26 +33,6 @@ std::vector<WordAt> words_of(std::string_view line) {
     return words;
 }
 
-// Digits with at most one point, exactly.
-std::optional<Rational> decimal(std::string_view text) {
-    std::int64_t digits = 0, denominator = 1;
-    bool point = false, any = false;
-    for (const char c : text) {
-        if (c == '.' && !point) {
-            point = true;
-            continue;
-        }
-        if (c < '0' || c > '9' || digits > 900'000'000'000'000'000 ||
-            denominator > 100'000'000'000'000'000) {
-            return std::nullopt;
-        }
-        digits = digits * 10 + (c - '0');
-        denominator *= point ? 10 : 1;
-        any = true;
-    }
-    return any ? make_rational(digits, denominator) : std::nullopt;
-}
-
 struct Line {
     std::optional<LiveEvent> event;
     std::optional<std::uint64_t> seed;
@@ -69,7 +49,7 @@ class LineParser {
             return Line{};
         }
         if (words[0].text == "seed" && words.size() == 2) {
-            const auto seed = decimal(words[1].text);
+            const auto seed = lang::parse_decimal(words[1].text);
             if (!seed || !seed->whole()) {
                 return fail(words[1], "bad-event-line", "a seed is a whole number",
                             "write `seed 7`");
@@ -84,7 +64,7 @@ class LineParser {
             return fail(words[0], "bad-event-line", "this is no event",
                         "write a time and a name: `2.5 s go`, or `now go`");
         }
-        const auto number = decimal(words[0].text);
+        const auto number = lang::parse_decimal(words[0].text);
         if (!number) {
             return fail(words[0], "bad-event-line", "this is no number", "write one such as 2.5");
         }

@@ -146,8 +146,8 @@ bool PlainSession::too_many_to_visit() {
     if (space == nullptr) {
         return false;
     }
-    const std::optional<proof::Natural> states = space->count(space->all());
-    return states.has_value() && *states > proof::Natural(kVisited);
+    const std::optional<Natural> states = space->count(space->all());
+    return states.has_value() && *states > Natural(kVisited);
 }
 
 const PlainSession::Markings* PlainSession::markings(double fraction) {

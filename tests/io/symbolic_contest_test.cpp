@@ -13,7 +13,6 @@
 
 using namespace puppetri;
 using namespace puppetri::io::testing;
-using proof::Natural;
 using proof::SymbolicSpace;
 
 namespace {

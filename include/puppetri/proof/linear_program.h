@@ -11,6 +11,8 @@
 
 namespace puppetri::proof {
 
+class Meter;
+
 class LinearProgram {
  public:
     enum class Answer : std::uint8_t {
@@ -59,6 +61,9 @@ class LinearProgram {
     // After kFeasible: the value found is numerator / denominator (above 0).
     struct Value {
         std::int64_t numerator = 0, denominator = 1;
+        std::int64_t floor() const {
+            return numerator / denominator - (numerator % denominator != 0 && numerator < 0);
+        }
     };
     Value value(std::uint32_t variable) const;
 
@@ -69,5 +74,9 @@ class LinearProgram {
     struct Tableau;
     std::unique_ptr<Tableau> tableau_;
 };
+
+// Are there rationals within all bounds? "no" also when the budget or the numbers' size do not let
+// it be known.
+bool is_feasible(LinearProgram& program, Meter& meter);
 
 }  // namespace puppetri::proof

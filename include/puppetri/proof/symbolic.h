@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "puppetri/base/natural.h"
 #include "puppetri/proof/budget.h"
-#include "puppetri/proof/natural.h"
 #include "puppetri/proof/plain_net.h"
 #include "puppetri/proof/predicate.h"
 

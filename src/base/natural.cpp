@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "puppetri/proof/natural.h"
+#include "puppetri/base/natural.h"
 
 #include <algorithm>
+#include <bit>
 
-namespace puppetri::proof {
+namespace puppetri {
 
 Natural::Natural(std::uint64_t value) {
     for (; value != 0; value >>= 32) {
@@ -45,26 +46,69 @@ Natural& Natural::operator*=(std::uint32_t factor) {
     return *this;
 }
 
+Natural& Natural::operator-=(const Natural& other) {
+    std::uint64_t borrow = 0;
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+        const std::uint64_t take = (i < other.words_.size() ? other.words_[i] : 0) + borrow;
+        borrow = words_[i] < take ? 1 : 0;
+        words_[i] = static_cast<std::uint32_t>(words_[i] - take);
+    }
+    trim();
+    return *this;
+}
+
+Natural& Natural::operator<<=(unsigned bits) {
+    if (zero()) {
+        return *this;
+    }
+    words_.insert(words_.begin(), bits / 32, 0);
+    return bits % 32 != 0 ? *this *= std::uint32_t{1} << (bits % 32) : *this;
+}
+
+void Natural::multiply_power_of_ten(unsigned exponent) {
+    for (; exponent >= 9; exponent -= 9) {
+        *this *= 1'000'000'000;
+    }
+    for (; exponent > 0; --exponent) {
+        *this *= 10;
+    }
+}
+
+std::uint32_t Natural::divide(std::uint32_t divisor) {
+    std::uint64_t rest = 0;
+    for (std::size_t i = words_.size(); i-- > 0;) {
+        rest = rest << 32 | words_[i];
+        words_[i] = static_cast<std::uint32_t>(rest / divisor);
+        rest %= divisor;
+    }
+    trim();
+    return static_cast<std::uint32_t>(rest);
+}
+
+std::uint32_t Natural::bit_count() const {
+    return zero()
+               ? 0
+               : static_cast<std::uint32_t>(words_.size() * 32 -
+                                            static_cast<unsigned>(std::countl_zero(words_.back())));
+}
+
+void Natural::trim() {
+    while (!words_.empty() && words_.back() == 0) {
+        words_.pop_back();
+    }
+}
+
 std::string Natural::decimal() const {
     if (zero()) {
         return "0";
     }
-    constexpr std::uint32_t kChunk = 1'000'000'000;
     std::string reversed;
-    std::vector<std::uint32_t> rest = words_;
-    while (!rest.empty()) {
-        std::uint64_t remainder = 0;
-        for (std::size_t i = rest.size(); i-- > 0;) {
-            remainder = remainder << 32 | rest[i];
-            rest[i] = static_cast<std::uint32_t>(remainder / kChunk);
-            remainder %= kChunk;
-        }
-        while (!rest.empty() && rest.back() == 0) {
-            rest.pop_back();
-        }
-        for (int digit = 0; digit < 9 && (remainder != 0 || !rest.empty()); ++digit) {
-            reversed.push_back(static_cast<char>('0' + remainder % 10));
-            remainder /= 10;
+    Natural rest = *this;
+    while (!rest.zero()) {
+        std::uint32_t part = rest.divide(1'000'000'000);
+        for (int digit = 0; digit < 9 && (part != 0 || !rest.zero()); ++digit) {
+            reversed.push_back(static_cast<char>('0' + part % 10));
+            part /= 10;
         }
     }
     std::reverse(reversed.begin(), reversed.end());
@@ -102,4 +146,4 @@ std::strong_ordering Natural::operator<=>(const Natural& other) const {
     return std::strong_ordering::equal;
 }
 
-}  // namespace puppetri::proof
+}  // namespace puppetri
