@@ -234,7 +234,8 @@ class Finder {
         }
     }
 
-    // "index_01", "HandIndex1", "f_index.01", "thumb2": a finger and a number from 1 to 3.
+    // "index_01", "HandIndex1", "f_index.01", "thumb2": a finger and a number from 1 to 3; a finger
+    // without a number, above its second joint, is the first.
     void fingers() {
         static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kFingers{
             {{"thumb", "Thumb"},
@@ -247,10 +248,11 @@ class Finder {
             kOther{"Proximal", "Intermediate", "Distal"};
         for (std::size_t j = 0; j < words_.size(); ++j) {
             const Words& w = words_[j];
-            if (w.side == Of::kMiddle || w.words.size() < 2) {
+            if (w.side == Of::kMiddle || w.words.empty()) {
                 continue;
             }
-            const std::string& number = w.words.back();
+            const bool first = w.words.size() == 1 && above_second(j);
+            const std::string number = first ? "1" : w.words.back();
             const char digit = number.back();
             if (number.size() > 2 || digit < '1' || digit > '3') {
                 continue;
@@ -264,6 +266,17 @@ class Finder {
                 }
             }
         }
+    }
+
+    bool above_second(std::size_t joint) const {
+        for (std::size_t j = 0; j < words_.size(); ++j) {
+            const auto& words = words_[j].words;
+            if (s_.joints[j].parent.value == joint && words.size() == 2 &&
+                words[0] == words_[joint].words[0] && words[1] == "2") {
+                return true;
+            }
+        }
+        return false;
     }
 
     bool says(std::size_t joint, std::string_view word) const {

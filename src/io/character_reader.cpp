@@ -16,6 +16,7 @@
 
 #include "affine.h"
 #include "character_mesh.h"
+#include "puppetri/figure/complete_humanoid.h"
 
 namespace puppetri::io {
 namespace {
@@ -58,7 +59,7 @@ class Reader {
         }
         finish_skeleton();
         c_.mesh = make_character_mesh(doc_, mesh_);
-        if (request_.humanoid && !fit(bones)) {
+        if (request_.humanoid && !fit(completed(bones))) {
             return fail();
         }
         if (!request_.humanoid) {
@@ -482,6 +483,19 @@ class Reader {
                                        0.5;
             }
         }
+    }
+
+    // Limbs of rigs that leave feet and hands to controllers are put right.
+    std::vector<figure::FoundBone> completed(const std::vector<figure::FoundBone>& bones) {
+        figure::CompletedSkeleton done = figure::complete_humanoid(c_.skeleton, c_.mesh, bones);
+        for (Diagnostic& note : done.notes) {
+            note.where.file = request_.path;
+            notes_.push_back(std::move(note));
+        }
+        done.rebind(c_.mesh);
+        c_.skeleton = std::move(done.skeleton);
+        c_.limits.assign(c_.skeleton.joints.size(), {});
+        return std::move(done.bones);
     }
 
     // Knees that bend a little at rest are straight in the T-pose: the height is that of the

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "puppetri/figure/complete_humanoid.h"
 #include "puppetri/figure/fit_humanoid.h"
 #include "puppetri/io/character_reader.h"
 #include "puppetri/motion/walk_cycle.h"
@@ -50,6 +51,7 @@ double lowest_sole(const figure::Figure& figure, const Pose& pose) {
 }
 
 motion::Clip converted(const motion::Clip& clip, const Skeleton& raw,
+                       const figure::CompletedSkeleton& completed,
                        const figure::Humanoid& humanoid) {
     const Skeleton& target = humanoid.figure.skeleton;
     const motion::ClipBinding binding = motion::bind_clip(clip, raw);
@@ -72,7 +74,8 @@ motion::Clip converted(const motion::Clip& clip, const Skeleton& raw,
     double lowest = 1e9;
     for (const double t : times_of(clip)) {
         motion::sample_clip(clip, binding, t, pose);
-        humanoid.rig.to_figure(humanoid.figure, raw, pose, normal);
+        humanoid.rig.to_figure(humanoid.figure, completed.skeleton, completed.carry(raw, pose),
+                               normal);
         const Transform hips = normal.parent_from_joint[humanoid.figure.root.value] *
                                normal.parent_from_joint[humanoid.figure.hips.value];
         for (std::size_t j = 0; j < target.joints.size(); ++j) {
@@ -128,8 +131,8 @@ scene::LoadedClips clips_for_figures(ClipFile file, const std::string& path) {
         return loaded;
     }
     const Skeleton raw = rooted(loaded.skeleton);
-    const std::vector<figure::FoundBone> bones = find_bones(raw);
-    auto humanoid = figure::fit_humanoid(raw, {}, bones);
+    const figure::CompletedSkeleton completed = figure::complete_humanoid(raw, {}, find_bones(raw));
+    auto humanoid = figure::fit_humanoid(completed.skeleton, {}, completed.bones);
     if (!humanoid) {
         loaded.no_humanoid = std::move(humanoid.error());
         for (Diagnostic& d : loaded.no_humanoid) {
@@ -152,7 +155,7 @@ scene::LoadedClips clips_for_figures(ClipFile file, const std::string& path) {
     }
     loaded.hips_height_m = humanoid->figure.hips_height_m;
     for (const motion::Clip& clip : loaded.raw) {
-        loaded.humanoid.push_back(converted(clip, raw, *humanoid));
+        loaded.humanoid.push_back(converted(clip, raw, completed, *humanoid));
     }
     return loaded;
 }

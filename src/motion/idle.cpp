@@ -17,6 +17,9 @@ namespace {
 // A standing leg is bent by 9 degrees: cos 4.5 degrees of its length. Standing on locked knees
 // looks like a doll, and straight legs leave inverse kinematics no room.
 constexpr double kStandingReach = 0.9969;
+// Fingers of very long arms hang this part of the height above the floor.
+constexpr double kOffFloor = 0.03;
+constexpr std::size_t kMiddleTip = 8;  // of the fingers' joints
 // The pelvis stands this part of the height ahead of the ankles: the foot reaches ahead of them.
 constexpr double kPelvisAhead = 0.012;
 
@@ -31,6 +34,25 @@ double hips_height_over(const figure::Figure& figure, int side, const LegControl
            std::sqrt(std::fmax(reach * reach - dx * dx - dz * dz, 0.04 * reach * reach)) - hip.y;
 }
 
+// How far below a standing figure's shoulder its wrist may hang so that the fingers stay off the
+// floor: of arms that are longer than the shoulders are high.
+double room_below_shoulder(const figure::Figure& figure, Side side) {
+    const figure::Arm& arm = figure.arms[index_of(side)];
+    const auto& joints = figure.skeleton.joints;
+    double room_m = -kOffFloor * figure.height_m;
+    for (figure::JointIndex j = arm.shoulder; j.valid(); j = joints[j.value].parent) {
+        room_m += joints[j.value].parent_from_joint_rest.translation.y;
+    }
+    // The axes are parallel at rest.
+    const figure::Joint& tip = joints[arm.fingers[kMiddleTip].value];
+    double hand_m = std::fabs(tip.end_site_joint.x);
+    for (figure::JointIndex j = arm.fingers[kMiddleTip]; j.valid() && j != arm.hand;
+         j = joints[j.value].parent) {
+        hand_m += std::fabs(joints[j.value].parent_from_joint_rest.translation.x);
+    }
+    return room_m - hand_m;
+}
+
 }  // namespace
 
 ArmControl hanging_arm(const figure::Figure& figure, Side side) {
@@ -39,8 +61,11 @@ ArmControl hanging_arm(const figure::Figure& figure, Side side) {
     ArmControl control;
     // Elbow bent by about 20 degrees, hand beside the thigh, thumb ahead and a little inward.
     const Vec3 direction = normalized(Vec3{0.13 * s, -1, 0.11});
-    control.chest_from_hand.translation = arm.clavicle_chest + arm.shoulder_clavicle +
-                                          direction * (0.983 * (arm.upper_m + arm.fore_m));
+    const double reach_m = std::fmin(0.983 * (arm.upper_m + arm.fore_m),
+                                     std::fmax(room_below_shoulder(figure, side) / -direction.y,
+                                               1.05 * std::fabs(arm.upper_m - arm.fore_m)));
+    control.chest_from_hand.translation =
+        arm.clavicle_chest + arm.shoulder_clavicle + direction * reach_m;
     control.chest_from_hand.rotation =
         about_x(-radians(14)) * about_y(-s * radians(22)) * about_z(-s * radians(86));
     return control;

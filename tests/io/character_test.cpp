@@ -4,10 +4,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <random>
 #include <string>
 
+#include "io/scene_files.h"
 #include "io/tiny_gltf.h"
 #include "puppetri/io/bone_names.h"
 #include "puppetri/io/character_reader.h"
@@ -78,26 +78,14 @@ void check_same_places(const figure::Character& c) {
     }
 }
 
-std::string shared(const char* name) {
-    return PUP_SOURCE_DIR "/../shared/motion/" + std::string(name);
-}
-
 Checked<scene::LoadedCharacter> load(const char* name, bool humanoid,
                                      std::optional<double> height = {}) {
     DiskFiles files;
     scene::CharacterRequest request;
-    request.path = shared(name);
+    request.path = kMotion + name;
     request.humanoid = humanoid;
     request.height_m = height;
     return files.assets()->character(request);
-}
-
-bool there(const char* name) {
-    if (DiskFiles().read(shared(name)).has_value()) {
-        return true;
-    }
-    std::printf("skipped: ../shared/motion/%s is missing\n", name);
-    return false;
 }
 
 }  // namespace

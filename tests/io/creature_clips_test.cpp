@@ -4,56 +4,26 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "io/scene_files.h"
 #include "puppetri/figure/character.h"
 #include "puppetri/io/clip_file.h"
-#include "puppetri/io/disk_files.h"
 #include "puppetri/scene/perform.h"
 
 using namespace puppetri;
+using namespace puppetri::io::testing;
 
 namespace {
-
-const std::string kMotion = PUP_SOURCE_DIR "/../shared/motion/";
-
-bool there(const char* file) {
-    const bool found = io::DiskFiles().read(kMotion + file).has_value();
-    if (!found) {
-        std::printf("skipped: ../shared/motion/%s is missing\n", file);
-    }
-    return found;
-}
-
-// A scene in memory; everything else is on the disk.
-class Files final : public scene::FileSource {
- public:
-    explicit Files(std::string text) : text_(std::move(text)) {}
-    Result<std::string, scene::FileProblem> read(const std::string& path) override {
-        if (path == "scene.pup") {
-            return text_;
-        }
-        return disk_.read(path);
-    }
-    std::string resolve(const std::string& importer, const std::string& written) override {
-        return disk_.resolve(importer, written);
-    }
-    scene::Assets* assets() override { return disk_.assets(); }
-
- private:
-    std::string text_;
-    io::DiskFiles disk_;
-};
 
 // All distances between joints of a figure and of the nodes, in the same proportion throughout.
 void moves_as_nodes(const char* file, const char* take, double height_m) {
     CAPTURE(file);
-    Files files("language 1\nscene \"s\"\nuntil 5 s\ncast { me: creature { file \"" + kMotion +
-                file + "\", height " + std::to_string(height_m) + " m } }\nclip c { from \"" +
-                kMotion + file + "\", take \"" + take +
-                "\" }\nplace p does me.c() tokens 1\nend { p }\n");
+    SceneFiles files("language 1\nscene \"s\"\nuntil 5 s\ncast { me: creature { file \"" + kMotion +
+                     file + "\", height " + std::to_string(height_m) + " m } }\nclip c { from \"" +
+                     kMotion + file + "\", take \"" + take +
+                     "\" }\nplace p does me.c() tokens 1\nend { p }\n");
     const auto scene = scene::load(files, "scene.pup");
     if (!scene) {
         FAIL(scene.error().front().element << ": " << scene.error().front().message);

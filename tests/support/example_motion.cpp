@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "puppetri/figure/character.h"
 #include "puppetri/io/disk_files.h"
@@ -13,10 +16,27 @@ namespace puppetri::test {
 namespace {
 
 constexpr double kRate_hz = 480;
-const std::string kCesiumMan = PUP_SOURCE_DIR "/../shared/motion/CesiumMan.glb";
+const std::string kMotion = PUP_SOURCE_DIR "/../shared/motion/";
+const std::string kExamples = PUP_SOURCE_DIR "/examples/";
 
 SimTime at(double t_s) {
     return {static_cast<std::int64_t>(std::nearbyint(t_s * kTicksPerSecond))};
+}
+
+std::string text_of(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// `file "NAME"` of characters.
+std::vector<std::string> files_of(const std::string& text) {
+    std::vector<std::string> names;
+    const std::string before = " file \"";
+    for (std::size_t at = text.find(before); at != std::string::npos; at = text.find(before, at)) {
+        at += before.size();
+        names.push_back(text.substr(at, text.find('"', at) - at));
+    }
+    return names;
 }
 
 [[noreturn]] void give_up(const std::string& name, const Diagnostics& why) {
@@ -43,8 +63,10 @@ const Example& example(const std::string& name) {
         }
     }
     io::DiskFiles files;
-    files.replace("CesiumMan.glb", kCesiumMan);
-    auto loaded = scene::load(files, PUP_SOURCE_DIR "/examples/" + name);
+    for (const std::string& file : files_of(text_of(kExamples + name))) {
+        files.replace(file, kMotion + file);
+    }
+    auto loaded = scene::load(files, kExamples + name);
     if (!loaded) {
         give_up(name, loaded.error());
     }
@@ -60,8 +82,45 @@ const Example& example(const std::string& name) {
     return *known.back();
 }
 
+const std::vector<std::string>& example_scenes() {
+    static const std::vector<std::string> found = [] {
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(kExamples)) {
+            const std::string text =
+                entry.path().extension() == ".pup" ? text_of(entry.path()) : std::string();
+            const auto says = [&](const char* what) {
+                return text.find(what) != std::string::npos;
+            };
+            if (!says("\nscene ") ||
+                !(says("mannequin") || says("character {") || says("creature") || says("linkage") ||
+                  says("import cast"))) {
+                continue;
+            }
+            const std::string name =
+                std::filesystem::relative(entry.path(), kExamples).generic_string();
+            const std::vector<std::string> files = files_of(text);
+            const bool all = std::all_of(files.begin(), files.end(), [](const std::string& file) {
+                return std::filesystem::exists(kMotion + file);
+            });
+            if (all) {
+                names.push_back(name);
+            } else {
+                std::printf("skipped: %s, whose character is not in ../shared/motion\n",
+                            name.c_str());
+            }
+        }
+        std::sort(names.begin(), names.end());
+        return names;
+    }();
+    return found;
+}
+
+bool Example::is_humanoid(std::uint32_t actor) const {
+    return character(actor) == nullptr || character(actor)->humanoid.has_value();
+}
+
 bool has_character_files() {
-    const bool there = io::DiskFiles().read(kCesiumMan).has_value();
+    const bool there = io::DiskFiles().read(kMotion + "CesiumMan.glb").has_value();
     if (!there) {
         std::printf("skipped: ../shared/motion/CesiumMan.glb is missing\n");
     }

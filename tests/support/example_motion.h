@@ -25,10 +25,19 @@ struct Example {
     }
     const std::string& actor(std::uint32_t i) const { return performance().actors()[i].name; }
     figure::Figure figure(std::uint32_t actor) const;
+    bool is_humanoid(std::uint32_t actor) const;
+    // Of what came from a file or is no mannequin; else null.
+    const figure::Character* character(std::uint32_t actor) const {
+        return scene->play.cast.actors[actor].character.get();
+    }
 };
 
 // Ends the program when the example cannot be performed.
 const Example& example(const std::string& name);
+
+// All scenes of the examples that somebody performs, in the order of their names; those whose
+// characters are not there are left out, which is said.
+const std::vector<std::string>& example_scenes();
 
 // Whether the files are there with which example 06 is performed; says that it is skipped
 // otherwise.
