@@ -1,2 +1,3 @@
 # The measuring instrument, shared with other modules' tests.
-target_sources(test_scene PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp")
+target_sources(test_scene PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp"
+    "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/count_allocations.cpp")
