@@ -385,8 +385,8 @@ Command prove_command() {
         "  puppetri run duet.pup --witness out/everybody.witness.json\n"
         "  puppetri prove net.pnml --time 5min --memory 8G",
         with_proving_options(
-            {{"scene", Value::kText, "SCENE", "a scene (.pup, .scxml) or a net (.pnml, .xml, .net)",
-              true},
+            {{"scene", Value::kText, "SCENE",
+              "a scene (.pup, .scxml, .tookima) or a net (.pnml, .xml, .net)", true},
              {"--rule", Value::kText, "NAME",
               "this rule or question only (of a loop: all its instances)", false},
              {"--samples", Value::kInteger, "N", "sample so many runs where nothing else answers",

@@ -197,8 +197,8 @@ Command run_command() {
         "  puppetri run show.pup --events session.txt --hash\n"
         "  puppetri run duet.pup --witness out/everybody.witness.json\n"
         "  puppetri run net.pnml --witness out/deadlock_free.witness.json   also --for 1000x",
-        {{"scene", Value::kText, "SCENE", "a scene (.pup, .scxml) or a net (.pnml, .xml, .net)",
-          true},
+        {{"scene", Value::kText, "SCENE",
+          "a scene (.pup, .scxml, .tookima) or a net (.pnml, .xml, .net)", true},
          {"--seed", Value::kInteger, "N", "instead of the scene's seed", false},
          {"--for", Value::kText, "HOW LONG",
           "a time (40s), frames (960f) or firings (1000x), instead of the scene's", false},

@@ -15,6 +15,7 @@
 #include "kinds.h"
 #include "line.h"
 #include "make.h"
+#include "states.h"
 
 namespace puppetri::notation {
 namespace {
@@ -29,99 +30,57 @@ class Automaton {
         : block_(block), teller_(block, file, out), body_(out.net.body) {}
 
     void lower() {
-        for (const lang::Property& p : block_.properties) {
-            Line line(p, teller_);
-            if (!has_arrow(p)) {
-                state(line);
-            }
+        const auto is_state = [](const lang::Property& p) { return !has_arrow(p); };
+        each_line(block_, teller_, is_state, [this](Line& line) { state(line); });
+        each_line(block_, teller_, has_arrow, [this](Line& line) { edge(line); });
+        if (starts_ != 1) {
+            teller_.error("start-state", block_.name.span,
+                          starts_ == 0 ? "no state is the first one"
+                                       : "an automaton is in one state at a time",
+                          "write `starts` behind exactly one state");
         }
-        for (const lang::Property& p : block_.properties) {
-            Line line(p, teller_);
-            if (has_arrow(p)) {
-                edge(line);
-            }
-        }
-        check();
+        states_.check();
     }
 
  private:
-    struct State {
-        std::size_t place = 0;
-        bool entered = false;
-    };
-
     void state(Line& line) {
-        lang::Place place = make_place(line.name().steps[0]);
-        place.span = line.span();
-        place.caption = line.caption();
-        place.is_public = true;
-        State made{.place = body_.places.size()};
+        lang::Place place = States::begin(line);
+        bool starts = false, final = false;
         while (!line.done()) {
-            if (line.word("takes")) {
-                if (const lang::Expr* e = line.value("a time")) {
-                    place.takes = make_duration(*e);
-                }
-            } else if (line.word("does")) {
-                if (const lang::Expr* e = line.value("a movement")) {
-                    place.does = *e;
-                }
-            } else if (line.word("runs")) {
-                if (const lang::Expr* e = line.value("a net")) {
-                    place.runs = *e;
-                }
-            } else if (line.word("starts")) {
+            if (line.takes(place.takes) || line.clause("does", "a movement", place.does) ||
+                line.clause("runs", "a net", place.runs)) {
+                continue;
+            }
+            if (line.word("starts")) {
                 give_token(place);
-                made.entered = true;
+                starts = true;
                 ++starts_;
             } else if (line.word("final")) {
-                lang::End end;
-                end.formulas.push_back(make_reference(place.name.text, line.span()));
-                end.span = line.span();
-                body_.ends.push_back(std::move(end));
+                final = true;
             } else {
                 line.finish(kStateForm);
             }
         }
-        const std::string name = place.name.text;
-        if (!states_.emplace(name, made).second) {
-            teller_.error("name-twice", line.span(), "there is already a state " + name,
-                          "choose another name");
+        if (!states_.add(std::move(place))) {
             return;
         }
-        body_.places.push_back(std::move(place));
-    }
-
-    State* find(const lang::Path& path) {
-        const auto found =
-            path.steps.size() == 1 ? states_.find(path.steps[0].text) : states_.end();
-        if (found == states_.end()) {
-            teller_.error("unknown-name", path.span,
-                          "there is no state " + lang::to_text(path) + " in this automaton",
-                          "give it a line of its own: " + lang::to_text(path) + " takes 1 s");
-            return nullptr;
+        if (starts) {
+            states_.enter(states_.size() - 1);
         }
-        return &found->second;
+        if (final) {
+            states_.end(states_.size() - 1);
+        }
     }
 
     void edge(Line& line) {
-        line.symbol("->");
-        const lang::Path* to = line.path("the name of a state");
-        if (to == nullptr) {
+        auto made = states_.edge(line);
+        if (!made) {
             return;
         }
-        const State* before = find(line.name());
-        State* after = find(*to);
-        if (before == nullptr || after == nullptr) {
-            return;
+        lang::Transition& t = made->transition;
+        if (const int same = ++names_[t.name.text]; same > 1) {
+            t.name.text += "_" + std::to_string(same);
         }
-        after->entered = true;
-        const std::string base = line.name().steps[0].text + "_to_" + to->steps[0].text;
-        const int same = ++names_[base];
-        lang::Transition t = make_transition(
-            make_name(same == 1 ? base : base + "_" + std::to_string(same), line.span()),
-            {line.name()}, {*to});
-        t.span = line.span();
-        t.is_public = true;
         t.caption = line.caption();
         while (!line.done()) {
             if (line.word("on")) {
@@ -130,41 +89,18 @@ class Automaton {
                         t.events.push_back(*event);
                     }
                 } while (line.word("or"));
-            } else if (line.word("when")) {
-                if (const lang::Expr* e = line.value("a condition")) {
-                    t.guard = *e;
-                }
-            } else if (line.word("odds")) {
-                if (const lang::Expr* e = line.value("a number above 0")) {
-                    t.odds = *e;
-                }
-            } else {
+            } else if (!line.clause("when", "a condition", t.guard) &&
+                       !line.clause("odds", "a number above 0", t.odds)) {
                 line.finish(kEdgeForm);
             }
         }
         body_.transitions.push_back(std::move(t));
     }
 
-    void check() {
-        if (starts_ != 1) {
-            teller_.error("start-state", block_.name.span,
-                          starts_ == 0 ? "no state is the first one"
-                                       : "an automaton is in one state at a time",
-                          "write `starts` behind exactly one state");
-        }
-        for (const auto& [name, state] : states_) {
-            const lang::Place& place = body_.places[state.place];
-            if (!state.entered) {
-                teller_.warn("never-entered", place.span, "the state " + name + " is never entered",
-                             "add a line: ... -> " + name + ", or remove it");
-            }
-        }
-    }
-
     const lang::Block& block_;
     Teller teller_;
     lang::Body& body_;
-    std::map<std::string, State> states_;
+    States states_{teller_, body_, "this automaton", " takes 1 s"};
     std::map<std::string, int> names_;
     int starts_ = 0;
 };

@@ -23,6 +23,7 @@
 #include "line.h"
 #include "literal.h"
 #include "make.h"
+#include "states.h"
 
 namespace puppetri::notation {
 namespace {
@@ -63,24 +64,19 @@ class Cells {
         if (!has_plain_lines(block_, teller_)) {
             return;
         }
-        const auto each = [this](auto&& wanted, auto&& read) {
-            for (const lang::Property& p : block_.properties) {
-                if (wanted(p)) {
-                    Line line(p, teller_);
-                    read(line, p);
-                }
-            }
+        const auto each = [this](const auto& wanted, const auto& read) {
+            each_line(block_, teller_, wanted, read);
         };
-        each(is_setting, [this](Line& line, const lang::Property& p) { setting(line, p); });
+        each(is_setting, [this](Line& line) { setting(line); });
         each(
             [](const lang::Property& p) { return !is_setting(p) && !has_arrow(p) && !is_start(p); },
-            [this](Line& line, const lang::Property&) { state(line); });
+            [this](Line& line) { state(line); });
         if (!good()) {
             return;
         }
         cells_.assign(static_cast<std::size_t>(grid_.columns * grid_.rows), 0);
-        each(has_arrow, [this](Line& line, const lang::Property&) { rule(line); });
-        each(is_start, [this](Line& line, const lang::Property&) { start(line); });
+        each(has_arrow, [this](Line& line) { rule(line); });
+        each(is_start, [this](Line& line) { start(line); });
         make();
     }
 
@@ -93,7 +89,7 @@ class Cells {
         lang::Path continues;   // the figure goes on with what it does in that state
         std::size_t place = 0;  // the state whose place the figure is in
         lang::Span span;
-        bool entered = false;
+        bool there = false;  // from the start
     };
     struct Rule {
         std::size_t from = 0, to = 0;
@@ -111,8 +107,8 @@ class Cells {
     }
     static bool is_start(const lang::Property& p) { return named(p, {"starts", "pattern"}); }
 
-    void setting(Line& line, const lang::Property& p) {
-        const std::string& what = p.name.steps[0].text;
+    void setting(Line& line) {
+        const std::string& what = line.name().steps[0].text;
         if (what == "every") {
             if (const Expr* e = line.value("the time of a step")) {
                 period_ = *e;
@@ -202,14 +198,9 @@ class Cells {
                 } else {
                     made.shown = text.text[0];
                 }
-            } else if (line.word("does")) {
-                if (const Expr* e = line.value("a movement of me")) {
-                    made.does = *e;
-                }
-            } else if (line.word("takes")) {
-                if (const Expr* e = line.value("a time")) {
-                    made.takes = make_duration(*e);
-                }
+            } else if (line.clause("does", "a movement of me", made.does) ||
+                       line.takes(made.takes)) {
+                continue;
             } else if (line.word("continues")) {
                 if (const lang::Path* path = line.path("the name of a state")) {
                     made.continues = *path;
@@ -313,11 +304,7 @@ class Cells {
         }
         const auto before = state_of(line.name()), after = state_of(*to);
         Rule made{.when = {}, .span = line.span()};
-        if (line.word("when")) {
-            if (const Expr* e = line.value("a condition")) {
-                made.when = *e;
-            }
-        }
+        line.clause("when", "a condition", made.when);
         line.finish(kRuleForm);
         if (!before || !after) {
             return;
@@ -328,7 +315,6 @@ class Cells {
         }
         made.from = *before;
         made.to = *after;
-        states_[*after].entered = true;
         if (made.when) {
             const auto errors = errors_;
             read_at(made.when, 0, 0);  // tells what is wrong with it, once
@@ -370,7 +356,7 @@ class Cells {
         if (!state) {
             return;
         }
-        states_[*state].entered = true;
+        states_[*state].there = true;
         if (!line.word("at")) {
             teller_.error("syntax", line.span(), "it does not say which cells",
                           "write " + std::string(kStartForm));
@@ -429,7 +415,7 @@ class Cells {
                                   "write `shown \"x\"` behind a state");
                     return;
                 }
-                s->entered = true;
+                s->there = true;
                 cells_[row * static_cast<std::size_t>(grid_.columns) + column] =
                     static_cast<std::size_t>(s - states_.begin());
             }
@@ -580,13 +566,29 @@ class Cells {
         return out;
     }
 
-    void make() {
-        for (const State& s : states_) {
-            if (!s.entered && &s != &states_[0] && !wolfram_) {
+    void warn_of_never_entered() {
+        std::vector<std::vector<std::size_t>> next(states_.size());
+        std::vector<std::size_t> begins{0};
+        for (const Rule& r : rules_) {
+            next[r.from].push_back(r.to);
+        }
+        for (std::size_t i = 0; i < states_.size(); ++i) {
+            if (states_[i].there) {
+                begins.push_back(i);
+            }
+        }
+        const std::vector<bool> entered = reachable(next, begins);
+        for (std::size_t i = 0; i < states_.size() && !wolfram_; ++i) {
+            const State& s = states_[i];
+            if (!entered[i]) {
                 teller_.warn("never-entered", s.span, "no cell is ever " + s.name.text,
                              "add a line: ... -> " + s.name.text + ", or remove it");
             }
         }
+    }
+
+    void make() {
+        warn_of_never_entered();
         const auto is_said = [](const lang::Property& p) { return has_arrow(p); };
         if (!wolfram_ &&
             std::none_of(block_.properties.begin(), block_.properties.end(), is_said)) {

@@ -126,8 +126,8 @@ lang::Expr as_condition(Translated t);
 
 // The net of the chart, called `name`. `vague`: transitions to a history from inside of its state,
 // which would leave more or less depending on what the history holds; the span of the whole where
-// the chart is too large. With one of these it is no net.
+// the chart is too large. With one of these it is no net. `never`: states that no run enters.
 lang::Net make_net(const Chart& chart, const std::string& name, lang::Span where,
-                   std::vector<lang::Span>& vague);
+                   std::vector<lang::Span>& vague, std::vector<int>& never);
 
 }  // namespace puppetri::notation::chart

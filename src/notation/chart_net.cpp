@@ -22,6 +22,8 @@ using lang::Op;
 using lang::Span;
 
 class Maker {
+    using Ids = std::vector<int>;
+
  public:
     Maker(const Chart& chart, lang::Net& net, Span top)
         : chart_(chart), body_(net.body), top_(top), where_(top), plan_(chart) {}
@@ -41,8 +43,21 @@ class Maker {
         return plan_.vague;
     }
 
+    // Of states within one another that nothing enters the outermost alone.
+    Ids never_entered() const {
+        const std::vector<bool> entered = plan_.entered();
+        Ids out;
+        for (int s = 1; s < static_cast<int>(chart_.states.size()); ++s) {
+            const int parent = at(s).parent;
+            if (!entered[z(s)] && at(s).kind != Kind::kHistory &&
+                (parent == 0 || entered[z(parent)])) {
+                out.push_back(s);
+            }
+        }
+        return out;
+    }
+
  private:
-    using Ids = std::vector<int>;
     const State& at(int s) const { return chart_.at(s); }
     static std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
@@ -694,12 +709,14 @@ class Maker {
 }  // namespace
 
 lang::Net make_net(const Chart& chart, const std::string& name, Span where,
-                   std::vector<Span>& vague) {
+                   std::vector<Span>& vague, std::vector<int>& never) {
     lang::Net net;
     net.name = make_name(name, where);
     net.caption = {chart.name, where};
     net.span = where;
-    vague = Maker(chart, net, where).make();
+    Maker maker(chart, net, where);
+    vague = maker.make();
+    never = maker.never_entered();
     return net;
 }
 

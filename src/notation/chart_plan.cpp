@@ -137,6 +137,27 @@ void Plan::prepare() {
     too_large = too_large || conflicts > kMaxConflicts || written > kMaxWritten;
 }
 
+std::vector<bool> Plan::entered() const {
+    std::vector<bool> out(chart_.states.size(), false);
+    std::vector<bool> done(moves.size(), false);
+    for (bool more = true; more;) {
+        more = false;
+        for (std::size_t m = 0; m < moves.size(); ++m) {
+            const bool possible =
+                m == 0 || std::any_of(moves[m].picked_by.begin(), moves[m].picked_by.end(),
+                                      [&](std::size_t atom) { return out[z(atoms[atom])]; });
+            if (done[m] || !possible) {
+                continue;
+            }
+            done[m] = more = true;
+            for (std::size_t s = 0; s < moves[m].entry.states.size(); ++s) {
+                out[s] = out[s] || moves[m].entry.states[s] != 0;
+            }
+        }
+    }
+    return out;
+}
+
 // Both may be selected at once, and leave states in common.
 bool Plan::conflict(int t, int u) const {
     const Move &a = moves[z(t)], &b = moves[z(u)];

@@ -109,6 +109,8 @@ class Plan {
 
     // States that a history may hold.
     std::vector<int> stored(const State& history) const;
+    // By state: some run may enter it, as far as transitions lead there, whatever their conditions.
+    std::vector<bool> entered() const;
     // More than one atomic state may ask for it at once, or for another that excludes it: then it
     // must be remembered which did.
     bool counted(int move) const;

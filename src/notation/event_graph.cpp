@@ -143,11 +143,10 @@ class EventGraph {
         }
         made.caption = line.caption();
         while (!line.done()) {
-            if (line.word("priority")) {
-                if (const Expr* e = line.value("a whole number")) {
-                    made.priority = *e;
-                }
-            } else if (line.word("starts")) {
+            if (line.clause("priority", "a whole number", made.priority)) {
+                continue;
+            }
+            if (line.word("starts")) {
                 made.starts = true;
             } else if (line.word("raises")) {
                 if (const lang::Path* e = line.path("the name of an event")) {
@@ -210,19 +209,12 @@ class EventGraph {
         made.arguments = target->args;
         made.caption = line.caption();
         while (!line.done()) {
-            if (line.word("after")) {
-                if (const Expr* e = line.value("a time")) {
-                    made.after = *e;
-                }
-            } else if (line.word("when")) {
-                if (const Expr* e = line.value("a condition")) {
-                    made.when = *e;
-                }
-            } else if (line.word("does")) {
-                if (const Expr* e = line.value("a movement")) {
-                    made.does = *e;
-                }
-            } else if (line.word("cancels")) {
+            if (line.clause("after", "a time", made.after) ||
+                line.clause("when", "a condition", made.when) ||
+                line.clause("does", "a movement", made.does)) {
+                continue;
+            }
+            if (line.word("cancels")) {
                 made.cancels = true;
                 made.all = line.word("all");
             } else {

@@ -12,7 +12,7 @@ namespace {
 
 // In alphabetical order.
 constexpr std::array kFormats = {
-    ForeignFormat{".scxml", "a statechart as other programs export it", read_scxml},
+    ForeignFormat{".scxml", "a statechart as other programs export it", read_scxml, bind_scxml},
     ForeignFormat{".tookima", "extended state machines, sampled", read_tookima},
     ForeignFormat{".tuples", "which keyframe an object reaches when", read_tuple_file},
 };

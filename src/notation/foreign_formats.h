@@ -7,6 +7,8 @@
 namespace puppetri::notation {
 
 void read_scxml(lang::Parsed& out, std::uint32_t file);
+void bind_scxml(lang::Body& body, lang::Use& use, const lang::Net& chart, const lang::File& file,
+                Diagnostics& diagnostics);
 void read_tookima(lang::Parsed& out, std::uint32_t file);
 void read_tuple_file(lang::Parsed& out, std::uint32_t file);
 

@@ -11,6 +11,7 @@ void lower_automaton(const lang::Block& block, const lang::File& file, Lowered& 
 void lower_cells(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_equations(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_event_graph(const lang::Block& block, const lang::File& file, Lowered& out);
+void lower_linda(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_logic(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_markov(const lang::Block& block, const lang::File& file, Lowered& out);
 void lower_messages(const lang::Block& block, const lang::File& file, Lowered& out);

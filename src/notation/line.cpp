@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "line.h"
 
+#include <algorithm>
+
+#include "make.h"
+
 namespace puppetri::notation {
 
 using lang::Expr;
@@ -10,6 +14,45 @@ void Teller::tell(Severity severity, std::string code, lang::Span where, std::st
                   std::string remedy) {
     out_.diagnostics.push_back({severity, std::move(code), file_.where(where), element_,
                                 std::move(message), std::move(remedy)});
+}
+
+std::string_view word_of(const Expr& e) {
+    return e.kind == ExprKind::kPath && e.path.steps.size() == 1 && e.path.steps[0].index.empty()
+               ? std::string_view(e.path.steps[0].text)
+               : std::string_view();
+}
+
+bool paths_of(const Expr& e, lang::Op joined_by, std::vector<lang::Path>& out) {
+    if (e.kind == ExprKind::kPath) {
+        out.push_back(e.path);
+        return true;
+    }
+    return e.kind == ExprKind::kBinary && e.op == joined_by &&
+           std::all_of(e.args.begin(), e.args.end(),
+                       [&](const lang::Argument& a) { return paths_of(a.value, joined_by, out); });
+}
+
+Labelled read_labelled(const lang::Property& property) {
+    Labelled out;
+    out.property = &property;
+    out.word = property.name.steps[0].text;
+    const std::vector<Expr>& values = property.values;
+    std::size_t i = 0;
+    lang::Caption caption;
+    if (i < values.size() && values[i].kind == ExprKind::kString) {
+        caption = {values[i].text, values[i].span};
+        ++i;
+    }
+    if (i < values.size() && values[i].kind == ExprKind::kSymbol && values[i].text == ":") {
+        out.label = std::move(out.word);
+        out.caption = std::move(caption);
+        out.word.clear();
+        if (++i < values.size() && !word_of(values[i]).empty()) {
+            out.word = word_of(values[i++]);
+        }
+        out.first = i;
+    }
+    return out;
 }
 
 bool has_arrow(const lang::Property& property) {
@@ -61,6 +104,25 @@ const Expr* Line::value(std::string_view wanted) {
     }
     ++at_;
     return e;
+}
+
+bool Line::clause(std::string_view text, std::string_view wanted, Expr& to) {
+    if (!word(text)) {
+        return false;
+    }
+    if (const Expr* e = value(wanted)) {
+        to = *e;
+    }
+    return true;
+}
+
+bool Line::takes(lang::Duration& to) {
+    Expr time;
+    const bool there = clause("takes", "a time", time);
+    if (time) {
+        to = make_duration(time);
+    }
+    return there;
 }
 
 const lang::Path* Line::path(std::string_view wanted) {

@@ -4,6 +4,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "puppetri/lang/syntax.h"
 #include "puppetri/notation/notation.h"
@@ -34,6 +35,22 @@ class Teller {
     Lowered& out_;
 };
 
+// The name of a lone word; empty where the value is anything else.
+std::string_view word_of(const lang::Expr& e);
+
+// The names in `A or B`, joined by this operator; false where it is anything else.
+bool paths_of(const lang::Expr& e, lang::Op joined_by, std::vector<lang::Path>& out);
+
+// A line `LABEL "caption": WORD VALUES`, or `WORD VALUES` without a label. The word is empty where
+// none follows the label.
+struct Labelled {
+    const lang::Property* property = nullptr;
+    std::string word, label;
+    lang::Caption caption;
+    std::size_t first = 0;  // the value after the word
+};
+Labelled read_labelled(const lang::Property& property);
+
 // Whether the line is `NAME -> ...`.
 bool has_arrow(const lang::Property& property);
 
@@ -57,6 +74,10 @@ class Line {
     lang::Caption caption();
     // Takes a value; tells that `wanted` is missing and gives null where there is none.
     const lang::Expr* value(std::string_view wanted);
+    // Takes this word and the value behind it, into `to`; gives whether the word was there.
+    bool clause(std::string_view text, std::string_view wanted, lang::Expr& to);
+    // The same of `takes TIME`, as places have it: also `takes auto` and `takes open`.
+    bool takes(lang::Duration& to);
     // Takes a value that is a name or a path.
     const lang::Path* path(std::string_view wanted);
     // Tells what is left over, with the forms that the line may have.
@@ -70,6 +91,18 @@ class Line {
     Teller& teller_;
     std::size_t at_;
 };
+
+// Reads the lines of a block that are wanted, in their order: notations read lines of one kind
+// after another.
+template <class Wanted, class Read>
+void each_line(const lang::Block& block, Teller& teller, const Wanted& wanted, const Read& read) {
+    for (const lang::Property& p : block.properties) {
+        if (wanted(p)) {
+            Line line(p, teller);
+            read(line);
+        }
+    }
+}
 
 // The rest of a line `data NAME: TYPE = VALUE`.
 // Gives   false where it is broken, and has told so.

@@ -149,14 +149,9 @@ class Logic {
                 if (const Expr* e = line.value("a time")) {
                     made.rise = made.fall = *e;
                 }
-            } else if (line.word("rise")) {
-                if (const Expr* e = line.value("a time")) {
-                    made.rise = *e;
-                }
-            } else if (line.word("fall")) {
-                if (const Expr* e = line.value("a time")) {
-                    made.fall = *e;
-                }
+            } else if (line.clause("rise", "a time", made.rise) ||
+                       line.clause("fall", "a time", made.fall)) {
+                continue;
             } else if (line.word("transport")) {
                 made.transport = true;
             } else if (line.word("starts")) {
@@ -288,15 +283,10 @@ class Logic {
         Expr period, high;
         bool starts = false;
         while (!line.done()) {
-            if (line.word("period")) {
-                if (const Expr* e = line.value("a time")) {
-                    period = *e;
-                }
-            } else if (line.word("high")) {
-                if (const Expr* e = line.value("a time")) {
-                    high = *e;
-                }
-            } else if (line.word("starts")) {
+            if (line.clause("period", "a time", period) || line.clause("high", "a time", high)) {
+                continue;
+            }
+            if (line.word("starts")) {
                 starts = yes_or_no(line);
             } else {
                 line.finish(kClockForm);

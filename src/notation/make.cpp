@@ -75,6 +75,21 @@ Expr make_both(Expr a, Expr b) {
     return make_binary(lang::Op::kAnd, std::move(a), std::move(b));
 }
 
+Expr make_any(const std::vector<std::string>& names, Span span) {
+    Expr any;
+    for (const std::string& name : names) {
+        Expr e = make_reference(name, span);
+        if (!any) {
+            any = std::move(e);
+        } else if (any.kind != ExprKind::kBinary) {
+            any = make_binary(lang::Op::kOr, std::move(any), std::move(e));
+        } else {
+            any.args.push_back({{}, std::move(e)});
+        }
+    }
+    return any;
+}
+
 Expr make_choice(Expr condition, Expr yes, Expr no) {
     Expr e;
     e.kind = ExprKind::kConditional;

@@ -28,6 +28,8 @@ lang::Expr make_unary(lang::Op op, lang::Expr a);
 lang::Expr make_binary(lang::Op op, lang::Expr a, lang::Expr b);
 // `a and b` where one of them may be missing.
 lang::Expr make_both(lang::Expr a, lang::Expr b);
+// `a or b or ...`: one of these is true; nothing where there are none.
+lang::Expr make_any(const std::vector<std::string>& names, lang::Span span);
 // condition ? yes : no
 lang::Expr make_choice(lang::Expr condition, lang::Expr yes, lang::Expr no);
 lang::Expr make_call(lang::Path path, std::vector<lang::Expr> positional, lang::Span span);

@@ -19,6 +19,7 @@
 #include "line.h"
 #include "literal.h"
 #include "make.h"
+#include "states.h"
 
 namespace puppetri::notation {
 namespace {
@@ -40,28 +41,21 @@ class Markov {
         if (!has_plain_lines(block_, teller_)) {
             return;
         }
-        for (const lang::Property& p : block_.properties) {
-            if (is_period(p)) {
-                Line line(p, teller_);
-                if (const Expr* e = line.value("the time of a step")) {
-                    period_ = *e;
-                }
-                line.finish("every TIME");
-                discrete_ = true;
+        each_line(block_, teller_, is_period, [this](Line& line) {
+            if (const Expr* e = line.value("the time of a step")) {
+                period_ = *e;
             }
-        }
-        for (const lang::Property& p : block_.properties) {
-            if (!is_period(p) && !has_arrow(p)) {
-                state(p);
-            }
-        }
-        for (const lang::Property& p : block_.properties) {
-            if (!is_period(p) && has_arrow(p)) {
-                edge(p);
-            }
-        }
-        for (State& state : states_) {
-            complete(body_.places[state.place].name.text, state);
+            line.finish("every TIME");
+            discrete_ = true;
+        });
+        const auto is_state = [](const lang::Property& p) {
+            return !is_period(p) && !has_arrow(p);
+        };
+        each_line(block_, teller_, is_state, [this](Line& line) { state(line); });
+        each_line(block_, teller_, has_arrow, [this](Line& line) { edge(line); });
+        states_.check();
+        for (std::size_t i = 0; i < states_.size(); ++i) {
+            complete(i);
         }
         begin();
     }
@@ -73,13 +67,12 @@ class Markov {
         bool mean = false;
         lang::Span span;
     };
-    struct State {
-        std::size_t place = 0;
-        bool entered = false, final = false;
+    struct Leaving {
+        bool final = false;
         std::vector<Edge> edges;
     };
     struct Start {
-        std::string state;
+        std::size_t state;
         Expr probability;
         lang::Span span;
     };
@@ -88,65 +81,36 @@ class Markov {
         return p.name.steps.size() == 1 && p.name.steps[0].text == "every" && !has_arrow(p);
     }
 
-    void state(const lang::Property& p) {
-        Line line(p, teller_);
-        lang::Place place = make_place(line.name().steps[0]);
-        place.span = line.span();
-        place.caption = line.caption();
-        place.is_public = true;
-        State made{.place = body_.places.size()};
-        const std::string name = place.name.text;
+    void state(Line& line) {
+        lang::Place place = States::begin(line);
+        Leaving made;
+        std::vector<Start> starts;
         while (!line.done()) {
-            if (line.word("does")) {
-                if (const Expr* e = line.value("a movement")) {
-                    place.does = *e;
-                }
-            } else if (line.word("starts")) {
-                Start start{name, {}, line.span()};
-                if (line.word("with")) {
-                    if (const Expr* e = line.value("a probability")) {
-                        start.probability = *e;
-                    }
-                }
-                made.entered = true;
-                starts_.push_back(std::move(start));
+            if (line.clause("does", "a movement", place.does)) {
+                continue;
+            }
+            if (line.word("starts")) {
+                starts.push_back({states_.size(), {}, line.span()});
+                line.clause("with", "a probability", starts.back().probability);
             } else if (line.word("final")) {
                 made.final = true;
             } else {
                 line.finish(kStateForm);
             }
         }
-        if (!numbers_.emplace(name, states_.size()).second) {
-            teller_.error("name-twice", line.span(), "there is already a state " + name,
-                          "choose another name");
+        if (!states_.add(std::move(place))) {
             return;
         }
-        states_.push_back(std::move(made));
-        body_.places.push_back(std::move(place));
+        leaving_.push_back(std::move(made));
+        for (Start& start : starts) {
+            states_.enter(start.state);
+            starts_.push_back(std::move(start));
+        }
     }
 
-    State* find(const lang::Path& path) {
-        const auto found =
-            path.steps.size() == 1 ? numbers_.find(path.steps[0].text) : numbers_.end();
-        if (found == numbers_.end()) {
-            teller_.error("unknown-name", path.span,
-                          "there is no state " + lang::to_text(path) + " in this chain",
-                          "give it a line of its own: " + lang::to_text(path));
-            return nullptr;
-        }
-        return &states_[found->second];
-    }
-
-    void edge(const lang::Property& p) {
-        Line line(p, teller_);
-        line.symbol("->");
-        const lang::Path* to = line.path("the name of a state");
-        if (to == nullptr) {
-            return;
-        }
-        State* before = find(line.name());
-        State* after = find(*to);
-        if (before == nullptr || after == nullptr) {
+    void edge(Line& line) {
+        auto between = states_.edge(line);
+        if (!between) {
             return;
         }
         Edge made{.span = line.span()};
@@ -173,31 +137,27 @@ class Markov {
             }
             made.value = *e;
         }
-        after->entered = true;
-        const std::string base = line.name().steps[0].text + "_to_" + to->steps[0].text;
-        made.transition = make_transition(make_name(base, line.span()), {line.name()}, {*to});
-        made.transition.span = line.span();
-        made.transition.is_public = true;
+        made.transition = std::move(between->transition);
         made.transition.caption = line.caption();
         line.finish(discrete_ ? kDiscreteForm : kContinuousForm);
-        for (const Edge& e : before->edges) {
-            if (e.transition.name.text == base) {
+        std::vector<Edge>& edges = leaving_[between->from].edges;
+        for (const Edge& e : edges) {
+            if (e.transition.name.text == made.transition.name.text) {
                 teller_.error("name-twice", line.span(),
-                              "there is already a line from " + line.name().steps[0].text + " to " +
-                                  to->steps[0].text,
+                              "there is already a line from " +
+                                  states_.place(between->from).name.text + " to " +
+                                  states_.place(between->to).name.text,
                               "add the two numbers up in one line");
                 return;
             }
         }
-        before->edges.push_back(std::move(made));
+        edges.push_back(std::move(made));
     }
 
-    void complete(std::string name, State& state) {
-        lang::Place& place = body_.places[state.place];
-        if (!state.entered) {
-            teller_.warn("never-entered", place.span, "the state " + name + " is never entered",
-                         "add a line: ... -> " + name + ", or remove it");
-        }
+    void complete(std::size_t number) {
+        lang::Place& place = states_.place(number);
+        Leaving& state = leaving_[number];
+        const std::string name = place.name.text;
         if (state.edges.empty()) {
             if (!state.final) {
                 teller_.error("sum-not-one", place.span,
@@ -206,10 +166,7 @@ class Markov {
                                   " -> ..., or write `final` if it stays there "
                                   "for ever");
             }
-            lang::End end;
-            end.formulas.push_back(make_reference(name, place.span));
-            end.span = place.span;
-            body_.ends.push_back(std::move(end));
+            states_.end(number);
             return;
         }
         if (state.final) {
@@ -317,7 +274,7 @@ class Markov {
     // Where it starts: one state, or one drawn in the first instant.
     void begin() {
         if (starts_.size() == 1 && !starts_[0].probability) {
-            give_token(body_.places[states_[numbers_[starts_[0].state]].place]);
+            give_token(states_.place(starts_[0].state));
             return;
         }
         Rational sum{0};
@@ -342,9 +299,10 @@ class Markov {
         start.is_public = true;
         body_.places.push_back(std::move(start));
         for (Start& s : starts_) {
+            const std::string name = states_.place(s.state).name.text;
             lang::Transition t =
-                make_transition(make_name("begins_in_" + s.state, s.span),
-                                {make_path("begins", s.span)}, {make_path(s.state, s.span)});
+                make_transition(make_name("begins_in_" + name, s.span),
+                                {make_path("begins", s.span)}, {make_path(name, s.span)});
             t.is_public = true;
             t.odds = std::move(s.probability);
             body_.transitions.push_back(std::move(t));
@@ -356,8 +314,8 @@ class Markov {
     lang::Body& body_;
     bool discrete_ = false;
     Expr period_;
-    std::vector<State> states_;  // in source order, as their places
-    std::map<std::string, std::size_t> numbers_;
+    States states_{teller_, body_, "this chain", ""};
+    std::vector<Leaving> leaving_;  // by state
     std::vector<Start> starts_;
 };
 

@@ -59,13 +59,9 @@ class Messages {
         if (!has_plain_lines(block_, teller_)) {
             return;
         }
-        const auto each = [this](std::string_view word, auto&& read) {
-            for (const lang::Property& p : block_.properties) {
-                if (kind_of(p) == word) {
-                    Line line(p, teller_);
-                    read(line);
-                }
-            }
+        const auto each = [this](std::string_view word, const auto& read) {
+            each_line(
+                block_, teller_, [&](const lang::Property& p) { return kind_of(p) == word; }, read);
         };
         each("message", [this](Line& line) { message(line); });
         each("node", [this](Line& line) { node(line); });
@@ -159,15 +155,10 @@ class Messages {
                   .answers = {},
                   .next = {}};
         while (!line.done()) {
-            if (line.word("takes")) {
-                if (const Expr* e = line.value("a time")) {
-                    made.takes = make_duration(*e);
-                }
-            } else if (line.word("does")) {
-                if (const Expr* e = line.value("a movement")) {
-                    made.does = *e;
-                }
-            } else if (line.word("raises")) {
+            if (line.takes(made.takes) || line.clause("does", "a movement", made.does)) {
+                continue;
+            }
+            if (line.word("raises")) {
                 if (const lang::Path* event = line.path("the name of an event")) {
                     made.raises = *event;
                 }
@@ -203,11 +194,10 @@ class Messages {
         Expr takes = make_number(Rational{0}, line.span(), "s");
         bool one_at_a_time = false, one_way = false;
         while (!line.done()) {
-            if (line.word("takes")) {
-                if (const Expr* e = line.value("a time")) {
-                    takes = *e;
-                }
-            } else if (line.word("one")) {
+            if (line.clause("takes", "a time", takes)) {
+                continue;
+            }
+            if (line.word("one")) {
                 if (line.word("way")) {
                     one_way = true;
                 } else if (line.word("at") && line.word("a") && line.word("time")) {
@@ -365,11 +355,7 @@ class Messages {
                 if (const Expr* e = line.value("a time")) {
                     event.every = *e;
                 }
-                if (line.word("from")) {
-                    if (const Expr* e = line.value("a time")) {
-                        event.from = *e;
-                    }
-                }
+                line.clause("from", "a time", event.from);
             } else if (line.word("at")) {
                 const Expr* e = line.value("a time");
                 if (e != nullptr && e->kind == ExprKind::kList) {

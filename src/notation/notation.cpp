@@ -19,6 +19,7 @@ constexpr std::array kNotations = {
              lower_equations},
     Notation{"event_graph", "an event graph: events that schedule and cancel others",
              lower_event_graph},
+    Notation{"linda", "a tuple space, and processes that put, take and read tuples", lower_linda},
     Notation{"logic", "a digital circuit of gates with delays", lower_logic},
     Notation{"markov", "a Markov chain in steps or in continuous time", lower_markov},
     Notation{"messages", "nodes that pass messages both ways along links", lower_messages},

@@ -83,16 +83,7 @@ class Pieces {
         state.caption = caption;
         state.is_public = true;
         state.span = where;
-        for (const std::string& p : piece.places) {
-            lang::Expr e = make_reference(p, where);
-            if (!state.formula) {
-                state.formula = std::move(e);
-            } else if (state.formula.kind != lang::ExprKind::kBinary) {
-                state.formula = make_binary(lang::Op::kOr, std::move(state.formula), std::move(e));
-            } else {
-                state.formula.args.push_back({{}, std::move(e)});
-            }
-        }
+        state.formula = make_any(piece.places, where);
         body_.states.push_back(std::move(state));
     }
 

@@ -130,13 +130,8 @@ class Pulses {
         if (!has_plain_lines(block_, teller_)) {
             return;
         }
-        const auto each = [this](auto&& wanted, auto&& read) {
-            for (const lang::Property& p : block_.properties) {
-                if (wanted(p)) {
-                    Line line(p, teller_);
-                    read(line);
-                }
-            }
+        const auto each = [this](const auto& wanted, const auto& read) {
+            each_line(block_, teller_, wanted, read);
         };
         each(is_period, [this](Line& line) {
             if (const Expr* e = line.value("the time of a step")) {

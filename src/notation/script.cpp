@@ -33,13 +33,6 @@ constexpr std::array kPrepositions = {
     std::string_view("facing"), std::string_view("by"),   std::string_view("at"),
     std::string_view("before"), std::string_view("arms"), std::string_view("side")};
 
-// The name of a lone word; empty where it is anything else.
-std::string_view word_of(const Expr& e) {
-    return e.kind == ExprKind::kPath && e.path.steps.size() == 1 && e.path.steps[0].index.empty()
-               ? std::string_view(e.path.steps[0].text)
-               : std::string_view();
-}
-
 bool ends_with(std::string_view text, std::string_view end) {
     return text.size() > end.size() && text.substr(text.size() - end.size()) == end;
 }
@@ -126,16 +119,6 @@ class Script {
     const Expr& resolved(const Expr& e) const {
         const auto found = marks_.find(std::string(word_of(e)));
         return found == marks_.end() ? e : found->second;
-    }
-
-    bool paths_of(const Expr& e, lang::Op op, std::vector<Path>& out) {
-        if (e.kind == ExprKind::kPath) {
-            out.push_back(e.path);
-            return true;
-        }
-        return e.kind == ExprKind::kBinary && e.op == op &&
-               std::all_of(e.args.begin(), e.args.end(),
-                           [&](const lang::Argument& a) { return paths_of(a.value, op, out); });
     }
 
     // -- one line

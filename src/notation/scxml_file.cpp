@@ -27,7 +27,17 @@ void read_scxml(lang::Parsed& out, std::uint32_t file) {
     std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
     name = name.substr(0, name.find('.'));
     std::vector<lang::Span> vague;
-    out.file.body.nets.push_back(chart::make_net(chart, name, document.root.span, vague));
+    std::vector<int> never;
+    out.file.body.nets.push_back(chart::make_net(chart, name, document.root.span, vague, never));
+    for (const int state : never) {
+        const chart::State& s = chart.at(state);
+        out.diagnostics.push_back({.severity = Severity::kWarning,
+                                   .code = "never-entered",
+                                   .where = out.file.where(s.span),
+                                   .element = "chart",
+                                   .message = "no transition leads to " + s.name,
+                                   .remedy = "add one, or remove the state"});
+    }
     for (const lang::Span span : vague) {
         if (span == document.root.span) {
             out.diagnostics.push_back(

@@ -27,17 +27,7 @@ constexpr std::string_view kForms =
     "does MOVEMENT takes TIME, runs NET, wait TIME, await EVENT, raise EVENT, set DATUM := VALUE, "
     "or sequence, parallel, race, choice, repeat, until, interrupt with { ... }";
 
-// One line of the block, read: `LABEL "caption": WORD ...`.
-struct Unit {
-    const Property* property = nullptr;
-    std::string word, label;
-    lang::Caption caption;
-    std::size_t first = 0;  // the value after the word
-};
-
-bool is_symbol(const Expr& e, std::string_view text) {
-    return e.kind == ExprKind::kSymbol && e.text == text;
-}
+using Unit = Labelled;  // one line of the block
 
 class Units : Pieces {
  public:
@@ -76,7 +66,7 @@ class Units : Pieces {
  private:
     // Labels are kept from names that are made.
     void reserve(const Property& p) {
-        const Unit u = read(p);
+        const Unit u = read_labelled(p);
         if (!u.label.empty() && !taken_.insert(u.label).second) {
             teller_.error("name-twice", p.span, "there is already a unit " + u.label,
                           "choose another name");
@@ -93,33 +83,6 @@ class Units : Pieces {
         }
     }
 
-    static Unit read(const Property& p) {
-        Unit u;
-        u.property = &p;
-        u.word = p.name.steps[0].text;
-        std::size_t i = 0;
-        lang::Caption caption;
-        if (i < p.values.size() && p.values[i].kind == ExprKind::kString) {
-            caption = {p.values[i].text, p.values[i].span};
-            ++i;
-        }
-        if (i < p.values.size() && is_symbol(p.values[i], ":")) {
-            u.label = u.word;
-            u.caption = caption;
-            u.word.clear();
-            ++i;
-            if (i < p.values.size() && p.values[i].kind == ExprKind::kPath &&
-                p.values[i].path.steps.size() == 1) {
-                u.word = p.values[i].path.steps[0].text;
-                ++i;
-            }
-        } else {
-            i = 0;
-        }
-        u.first = i;
-        return u;
-    }
-
     // The label, or `wanted`, with a number where that is taken.
     std::string name_of(const Unit& u, const std::string& wanted) {
         if (!u.label.empty()) {
@@ -133,35 +96,17 @@ class Units : Pieces {
     }
 
     // -- reading
-    // `A or B` as paths.
-    bool paths_of(const Expr& e, std::vector<Path>& out) {
-        if (e.kind == ExprKind::kPath) {
-            out.push_back(e.path);
-            return true;
-        }
-        if (e.kind == ExprKind::kBinary && e.op == lang::Op::kOr) {
-            for (const lang::Argument& a : e.args) {
-                if (!paths_of(a.value, out)) {
-                    return false;
-                }
-            }
-            return true;
-        }
-        return false;
-    }
-
-    std::vector<Path> events(Line& line, Span where) {
+    std::vector<Path> events(Line& line) {
         std::vector<Path> out;
         const Expr* e = line.value("the name of an event");
-        if (e != nullptr && !paths_of(*e, out)) {
+        if (e != nullptr && !paths_of(*e, lang::Op::kOr, out)) {
             teller_.error("syntax", e->span, "events are wanted here", "write EVENT or EVENT");
         }
-        (void)where;
         return out;
     }
 
     Piece unit(const Property& p, int depth) {
-        const Unit u = read(p);
+        const Unit u = read_labelled(p);
         if (p.name.steps.size() != 1 || u.word.empty()) {
             return unknown(p);
         }
@@ -238,7 +183,7 @@ class Units : Pieces {
 
     Piece await(const Unit& u, Line& line, int) {
         Piece out;
-        const std::vector<Path> list = events(line, u.property->span);
+        const std::vector<Path> list = events(line);
         if (list.empty()) {
             return out;
         }
@@ -301,7 +246,7 @@ class Units : Pieces {
         const Piece* before = nullptr;
         Piece last;
         for (const Property& p : lines) {
-            if (depth == 0 && p.name.steps[0].text == "data" && read(p).label.empty()) {
+            if (depth == 0 && p.name.steps[0].text == "data" && read_labelled(p).label.empty()) {
                 datum(p);
                 continue;
             }
@@ -349,11 +294,7 @@ class Units : Pieces {
         made.is_public = true;
         made.type = *type;
         made.span = p.span;
-        if (line.word("starts")) {
-            if (const Expr* e = line.value("a value")) {
-                made.initial = *e;
-            }
-        }
+        line.clause("starts", "a value", made.initial);
         line.finish("data NAME TYPE starts VALUE");
         body_.data.push_back(std::move(made));
     }
@@ -460,9 +401,9 @@ class Units : Pieces {
         out.takes_time = true;
         Expr any;  // of the conditions
         int number = 0;
-        bool free = false, otherwise = false;
+        bool free = false;
         for (const Property& child : u.property->children) {
-            Unit option = read(child);
+            Unit option = read_labelled(child);
             if (option.word != "option" && option.word != "otherwise") {
                 teller_.error("syntax", child.span, "a choice is made between options",
                               "write option { ... }, or option when CONDITION odds NUMBER on "
@@ -487,7 +428,7 @@ class Units : Pieces {
                         t.odds = *e;
                     }
                 } else if (option.word == "option" && line.word("on")) {
-                    t.events = events(line, child.span);
+                    t.events = events(line);
                     t.next_event = waits = true;
                 } else if (option.word == "option" && line.word("after")) {
                     if (const Expr* e = line.value("a time")) {
@@ -499,7 +440,6 @@ class Units : Pieces {
                 }
             }
             if (option.word == "otherwise") {
-                otherwise = true;
                 if (!any || free) {
                     teller_.error("never-reached", child.span,
                                   "this is never chosen: an option before it is always possible",
@@ -530,7 +470,6 @@ class Units : Pieces {
             option.label = name;
             name_state(part, option.caption, child.span);
         }
-        (void)otherwise;
         out.begins = {at};
         out.ends = {over};
         if (number == 0) {
@@ -550,7 +489,7 @@ class Units : Pieces {
         std::vector<Path> end;
         Expr times;
         if (line.word("until")) {
-            end = events(line, where);
+            end = events(line);
         } else if (!line.done()) {
             if (const Expr* e = line.value("a number")) {
                 times = *e;
@@ -635,7 +574,7 @@ class Units : Pieces {
         std::vector<const Property*> cases;
         for (const Property& child : u.property->children) {
             const std::string& word = child.name.steps[0].text;
-            if (u.word == "interrupt" && read(child).label.empty() &&
+            if (u.word == "interrupt" && read_labelled(child).label.empty() &&
                 (word == "on" || word == "after")) {
                 cases.push_back(&child);
             } else {
@@ -663,7 +602,7 @@ class Units : Pieces {
                 }
                 t.priority = make_number(Rational{-depth}, at);
             } else {
-                t.events = events(l, at);
+                t.events = events(l);
                 t.next_event = true;
                 t.priority = make_number(Rational{2 + depth_ - depth}, at);
             }

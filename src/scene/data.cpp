@@ -153,6 +153,11 @@ void Elaboration::complete_attributes() {
     }
 }
 
+std::string attribute_name(const lang::Path& name) {
+    return name.steps.size() == 1 && name.steps[0].index.empty() ? name.steps[0].text
+                                                                 : lang::to_text(name);
+}
+
 std::optional<std::vector<Expr>> Elaboration::bind_attributes(
     const std::vector<lang::Binding>& given, net::PlaceIndex place, const Scope& scope,
     lang::Span where, std::string_view except) {
@@ -165,7 +170,7 @@ std::optional<std::vector<Expr>> Elaboration::bind_attributes(
     }
     bool good = true;
     for (const lang::Binding& b : given) {
-        const std::string name = lang::to_text(b.name);
+        const std::string name = attribute_name(b.name);
         if (name == except) {
             continue;
         }

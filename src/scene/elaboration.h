@@ -135,6 +135,9 @@ enum class Wanted : std::uint8_t { kNet, kTokenType };
 // no interval and not temporal.
 ExprOp kernel_op(lang::Op op);  // expressions.cpp
 
+// An attribute as tokens have it, without quotes, of a binding `'its kind' = 3`.
+std::string attribute_name(const lang::Path& name);  // data.cpp
+
 class Elaboration {
  public:
     explicit Elaboration(const Library& library) : library_(library) {}

@@ -37,6 +37,9 @@ class Loader {
         for (std::uint32_t i = 0; i < library_.files.size(); ++i) {
             declare_imports(i);
         }
+        for (std::uint32_t i = 0; i < library_.files.size(); ++i) {
+            bind(i, library_.files[i].body);
+        }
         return std::move(library_);
     }
 
@@ -199,6 +202,30 @@ class Loader {
                 }
                 declare(library_.visible[file], name, *found);
             }
+        }
+    }
+
+    // Uses of files in other notations whose lines are more than arguments.
+    void bind(std::uint32_t file, lang::Body& body) {
+        for (std::size_t i = 0; i < body.uses.size(); ++i) {
+            lang::Use& use = body.uses[i];
+            const notation::ForeignFormat* format = notation::find_foreign_format(use.path);
+            if (format == nullptr || format->bind == nullptr || use.args.empty()) {
+                continue;
+            }
+            const auto found = library_.visible[file].find(use.net.steps[0].text);
+            if (found != library_.visible[file].end() && found->second.net != nullptr) {
+                const std::size_t told = library_.diagnostics.size();
+                format->bind(body, use, *found->second.net, library_.files[file],
+                             library_.diagnostics);
+                library_.readable = library_.readable && library_.diagnostics.size() == told;
+            }
+        }
+        for (lang::Net& net : body.nets) {
+            bind(file, net.body);
+        }
+        for (lang::For& loop : body.loops) {
+            bind(file, loop.body);
         }
     }
 

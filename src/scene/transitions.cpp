@@ -66,7 +66,7 @@ void Elaboration::bind_patterns(const lang::Arc& arc, Locals& locals, const Scop
         known.push_back(a.name);
     }
     for (const lang::Binding& b : arc.pattern) {
-        const std::string name = lang::to_text(b.name);
+        const std::string name = attribute_name(b.name);
         const lang::Name* single = single_name(b.value);
         if (name == kLeft && out.kind == net::ArcKind::kTakeNow && single != nullptr) {
             out.time_left = variable(locals, single->text, {ValueKind::kTime});

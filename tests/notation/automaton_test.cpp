@@ -58,6 +58,24 @@ automaton m {
                      {5, "never-entered"}, {6, "syntax"}, {7, "unknown-name"}});
 }
 
+TEST_CASE("states that lead to each other alone are never entered [unit]") {
+    const Diagnostics list = defects_of(R"(until 9 s
+use m
+automaton m {
+  a takes 1 s starts
+  b takes 1 s
+  c takes 1 s
+  a -> a
+  b -> c
+  c -> b
+}
+)");
+    REQUIRE(list.size() == 2);
+    CHECK(list[0].code == "never-entered");
+    CHECK(list[0].where.line == 7);
+    CHECK(list[1].where.line == 8);
+}
+
 TEST_CASE("every kind of notation is found, in alphabetical order [unit]") {
     std::string_view before;
     for (const Notation& n : notations()) {

@@ -200,6 +200,38 @@ event_graph graph {
     }
 }
 
+TEST_CASE("a movement goes on between an event and the one that it schedules [unit]") {
+    const std::string head = R"(until 20 s
+cast { ana: mannequin }
+use graph as g
+event_graph graph {
+  data n: 0 .. 3 = 0
+  event a starts
+  event b { n := n + 1 }
+  event c
+  a -> b after 2 s does ana.wave() when n < 3
+  b -> a after 1 s when n < 2
+)";
+    const scene::Scene scene = from_text(head + "  b -> c after 4 s does ana.bow()\n}\n");
+    const auto acts = [&](const char* path) {
+        const net::PlaceIndex p = scene.net.find_place(path);
+        REQUIRE(p.value != net::PlaceIndex{}.value);
+        return scene.net.action(p).value != net::ActionIndex{}.value;
+    };
+    CHECK(acts("g.b_list"));
+    CHECK(acts("g.c_list"));
+    CHECK_FALSE(acts("g.a_list"));
+    std::vector<std::string> log = log_of(scene, 20);
+    std::erase_if(log, [](const std::string& line) { return line.find('_') != line.npos; });
+    CHECK(log == std::vector<std::string>{"0 s g.a", "2 s g.b", "3 s g.a", "5 s g.b", "6 s g.c",
+                                          "9 s g.c"});
+    // Two edges to one event: which of them is moving would be nobody's guess.
+    const Diagnostics list = defects_of(head + "  a -> c after 1 s does ana.bow()\n  b -> c\n}\n");
+    REQUIRE(list.size() == 1);
+    CHECK(list[0].code == "not-together");
+    CHECK(list[0].where.line == 13);
+}
+
 TEST_CASE("defects of an event graph are told where they stand [unit]") {
     const Diagnostics list = defects_of(R"(use g
 event_graph g {

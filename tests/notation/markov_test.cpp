@@ -112,6 +112,8 @@ TEST_CASE("other defects of chains are told where they stand [unit]") {
     CHECK(codes(" a starts\n b\n a -> b mean 1 s\n b -> a mean 1 s\n a -> b mean 2 s\n") ==
           Codes{{9, "name-twice"}});
     CHECK(codes(" a starts final\n a -> a mean 1 s\n") == Codes{{5, "final-is-left"}});
+    CHECK(codes(" a starts final\n b\n c\n b -> c mean 1 s\n c -> b mean 1 s\n") ==
+          Codes{{6, "never-entered"}, {7, "never-entered"}});
 }
 
 }  // namespace

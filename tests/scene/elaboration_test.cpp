@@ -231,6 +231,16 @@ TEST_CASE("attributes of tokens reach movements, guards and durations [unit]") {
     CHECK(entry.left.ticks == 4 * kTicksPerSecond);
 }
 
+TEST_CASE("an attribute may have a name in quotes, wherever it is named [unit]") {
+    const Scene scene = from_text(
+        "token Job('my kind': 0 .. 3)\nplace todo of Job tokens 1 ('my kind' = 2)\nplace done of "
+        "Job\ngo: todo('my kind' = k) -> done('my kind' = k + 1) when k = 2\n"
+        "again: done('my kind' = 3) -> todo('my kind' = 0)");
+    const auto performed = perform(scene);
+    REQUIRE(performed.has_value());
+    CHECK(performed->firings == 2);
+}
+
 TEST_CASE("events of movements wake transitions [unit]") {
     const Scene scene = from_text(
         "place throwing does ana.throw(ball, to: rui) tokens 1\nplace seen\nplace after\n"
