@@ -173,10 +173,9 @@ std::optional<std::uint32_t> ColourTerms::read_bag(pugi::xml_node node, std::uin
             return std::nullopt;
         }
         if (const auto sort = colours_.sort_of(inside[0], element_)) {
-            return push({.op = ColourTerm::kAll,
-                         .sort = *sort,
-                         .single = colours_.sort(*sort).size == 1},
-                        {});
+            return push(
+                {.op = ColourTerm::kAll, .sort = *sort, .single = colours_.sort(*sort).size == 1},
+                {});
         }
         return std::nullopt;
     }

@@ -121,12 +121,11 @@ class Posed final : public Movement {
                 continue;
             }
             const bool arm = is_arm(limb);
-            const auto of = [&](const Pose& p) {
-                return p.parent_from_joint[joint.value].rotation;
-            };
-            Quat& q = pose.parent_from_joint[joint.value].rotation;
+            const std::uint32_t j = joint.value;
+            const auto of = [j](const Pose& p) { return p.parent_from_joint[j].rotation; };
+            Quat& q = pose.parent_from_joint[j].rotation;
             const Quat other = !arm ? q : joining ? of(s.joining) : of(s.solved);
-            q = figure::clamp_to_limit(figure_.limits[joint.value],
+            q = figure::clamp_to_limit(figure_.limits[j],
                                        normalized(of(s.own) * conjugate(of(s.solved)) * other));
         }
         for (const DrivenPath& path : spec_.paths) {
