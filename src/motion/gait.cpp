@@ -26,7 +26,8 @@ LimbSet transfer_limbs(Side transfer) { return limb_set(leg_of(transfer)); }
 
 namespace {
 
-// After its end a step slows down to a halt within this time constant, along its own curves.
+// After its end a step that reaches rest, or runs, slows down to a halt within this time constant,
+// along its own curves; others as planned (gait_plan.h).
 constexpr double kHalt_s = 0.05;
 
 class Step final : public Movement {
@@ -47,10 +48,22 @@ class Step final : public Movement {
     }
 
     void sample(double t_s, Controls& out) const override {
-        const double T = plan_.duration_s;
-        const double t = t_s <= T ? t_s : T + kHalt_s * (1 - puppetri::exp(-(t_s - T) / kHalt_s));
+        const double T = plan_.duration_s, late = std::fmax(t_s - T, 0);
+        const bool halts = plan_.halt.length_s > 0;
+        const double t = t_s <= T ? t_s
+                         : halts  ? T + plan_.halt.past_end_s(late)
+                                  : T + kHalt_s * (1 - puppetri::exp(-late / kHalt_s));
         Controls c = own_at(t);
+        if (halts && late > 0) {
+            const Vec3 level = extended(t);
+            c.pelvis.position_world =
+                plan_.world_from_path * Vec3{level.x, plan_.halt.height.at(late).position, level.z};
+            c.legs[index_of(other(spec_.transfer))] = plan_.halt.support.at(late);
+        }
         join_.apply(t, c);
+        if (halts && late > 0) {
+            living_.add(late, smooth_rise(late, 1.5), c);
+        }
         if (t_s > T && spec_.kind == StepKind::kLastHalf) {
             const double settled = smooth_rise(t_s - T, 0.8);
             c.pelvis.position_world =
@@ -64,7 +77,9 @@ class Step final : public Movement {
  private:
     Controls own_at(double t) const {
         const Quat heading = about_y(plan_.heading_rad);
-        const double yaw = plan_.pelvis_yaw.at(t).position, list = plan_.pelvis_list.at(t).position;
+        const double yaw = plan_.pelvis_yaw.at(t).position;
+        const Motion1 lists = plan_.pelvis_list.at(std::fmin(t, plan_.duration_s));
+        const double list = lists.position + lists.velocity * std::fmax(t - plan_.duration_s, 0);
         Controls c;
         c.pelvis.position_world = plan_.world_from_path * extended(t);
         c.pelvis.rotation_world = heading * about_y(yaw) * about_z(list);

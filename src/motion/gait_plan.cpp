@@ -3,6 +3,7 @@
 // feet, which need nothing else; last the pelvis's height, which has to suit the legs that stand.
 #include "gait_plan.h"
 
+#include "living.h"
 #include "puppetri/base/elementary.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/idle.h"
@@ -48,7 +49,10 @@ constexpr double kUsualLever = 0.152, kUsualHeel = 0.072;
 constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down. Less
 constexpr double kLessPerDuty = 1.15;    // for each duty above 0.62: both feet are down that long
 constexpr double kRollFlat_s = 0.2;      // of the foot that just landed
-constexpr double kCatch_s = 0.16;        // to put down a foot that should already stand
+constexpr double kHalt_m_s2 = 3.65, kShortestHalt_s = 0.15;  // of a step whose next one is late
+constexpr double kLow_m =
+    0.005;  // a step that finds the hips lower than that lets them rise slowly
+constexpr double kCatch_s = 0.16;  // to put down a foot that should already stand
 
 class Planner {
  public:
@@ -89,6 +93,9 @@ class Planner {
                 break;
             }
             swing_pitch_ = clamp(swing_pitch_ - 0.8 * missing, radians(-75), radians(-10));
+        }
+        if (!last_) {
+            plan_halt();
         }
         return std::move(plan_);
     }
@@ -351,7 +358,10 @@ class Planner {
         const double lever = f_.legs[index_of(side)].ball_foot.z / f_.leg_m;
         double lift_to =
             radians(-4) * early * early * std::fmin(1, kUsualLever / std::fmax(lever, 1e-3));
-        if (!first_ && planted) {
+        if (first_ && planted) {
+            // It may be found on its toes, where a step came to rest half way.
+            lift_to = std::fmin(lift_to, swing_.pitch.position + lift * swing_.pitch.velocity);
+        } else if (planted) {
             const Vec3 front =
                 path_from_world_ * plan_.feet[index_of(support_side_)].at(lift).ankle_world;
             lift_to =
@@ -390,8 +400,7 @@ class Planner {
         if (lift > 0.01) {
             way.push_back({lift, lift_to});
         }
-        const double peak =
-            first_ ? 0.72 * swing_pitch_ : std::fmin(swing_pitch_, lift_to - radians(2));
+        const double peak = std::fmin((first_ ? 0.72 : 1) * swing_pitch_, lift_to - radians(2));
         if (planted) {  // one that is in the air already is on its way down
             way.push_back({lift + (first_ ? 0.48 : last_ ? 0.3 : 0.24) * d, peak});
         }
@@ -537,8 +546,14 @@ class Planner {
             }
         }
         constexpr int kBands = 20;
+        // Who is found low (a step that came to rest half way) comes up in its time.
+        const double low = std::fmax(0, band(0).lowest - now.position.y - kLow_m);
         for (int i = 1; i <= kBands; ++i) {
             height.bands.push_back(band(T * i / kBands));
+            HeightBand& b = height.bands.back();
+            const double lower = low * (1 - smooth_rise(b.t_s, T));
+            b.lowest -= lower;
+            b.highest -= lower;
         }
         for (const double t : {plan_.lift_s, plan_.strike_s}) {
             if (t > 0 && t < T) {
@@ -555,6 +570,38 @@ class Planner {
         plan_.pelvis_path.y = plan_height(height);
     }
 
+    // Where it stops the legs suit each other as they do when the foot behind leaves the floor.
+    void plan_halt() {
+        const double T = plan_.duration_s;
+        if (!plan_.feet[0].stands_at(T) || !plan_.feet[1].stands_at(T)) {
+            return;
+        }
+        const Motion3 end = plan_.pelvis_path.at(T);
+        const double left = std::fmax(x_ + ahead_of_ankles() - end.position.z, 0);
+        const double speed = std::fmax(end.velocity.z, 0.1 * x_ / n_);
+        plan_.halt.length_s = std::fmax(
+            std::fmin(speed / ((1 - Halt::kRamp) * kHalt_m_s2), 2 * left / speed), kShortestHalt_s);
+        const double H = plan_.halt.length_s;
+        const Vec3 rests = end.position + end.velocity * plan_.halt.past_end_s(H);
+        const LegControl front_leg =
+            plan_.feet[index_of(spec_.transfer)].at(T + plan_.halt.past_end_s(H));
+        const Vec3 front = path_from_world_ * front_leg.ankle_world;
+        FootPath& hind = plan_.halt.support;
+        hind.set_body(f_, support_side_);
+        hind.stand(0, support_print_);
+        const double risen =
+            std::fmin(lift_pitch(support_side_, support_print_, front, rests, turn_at(T)),
+                      plan_.feet[index_of(support_side_)].pitch().at(T).position);
+        hind.set_pitch(
+            Curve1({{0, plan_.feet[index_of(support_side_)].pitch().at(T)}, {H, {risen, 0, 0}}}));
+        const Vec3 hind_ankle = path_from_world_ * hind.at(H).ankle_world;
+        const double height =
+            std::fmin(hips_height(spec_.transfer, front, rests, turn_at(T), kPushing),
+                      hips_height(support_side_, hind_ankle, rests, turn_at(T), kPushing));
+        plan_.halt.height = Curve1(
+            {{0, {end.position.y, end.velocity.y, end.acceleration.y}}, {H, {height, 0, 0}}});
+    }
+
     const figure::Figure& f_;
     const MotionContext& context_;
     const StepSpec& spec_;
@@ -568,6 +615,16 @@ class Planner {
 };
 
 }  // namespace
+
+// The pace falls by a slope that itself rises from 0 and falls back to it within kRamp of the
+// whole.
+double Halt::past_end_s(double late_s) const {
+    constexpr double p = kRamp, slope = 1 / (1 - p);
+    const double r = clamp(late_s / length_s, 0, 1), left = 1 - r;
+    return length_s * (r < p        ? r - slope * r * r * r / (6 * p)
+                       : r <= 1 - p ? r - slope * (r * (r - p) / 2 + p * p / 6)
+                                    : 0.5 - slope * left * left * left / (6 * p));
+}
 
 double longest_stroke_m(const figure::Figure& figure, double duty_factor) {
     return duty_factor < kRunsBelow

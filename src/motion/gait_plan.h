@@ -7,6 +7,19 @@
 
 namespace puppetri::motion {
 
+// How a step that walks on comes to rest where the next one is late: the pelvis goes on over the
+// front foot, slower and slower, and the heel of the foot behind rises with it. Times are seconds
+// after the step's end.
+struct Halt {
+    static constexpr double kRamp = 0.1;
+    double length_s = 0;  // 0: it has none
+    FootPath support;     // of the support leg
+    Curve1 height;        // of the pelvis
+    // How far along its own curves the step is past its end: the pace falls from 1 to 0, half
+    // of length_s at last.
+    double past_end_s(double late_s) const;
+};
+
 // Path space: the support foot's ankle, put on the floor, is the origin; +Z is the way ahead, +Y
 // up, +X left.
 struct StepPlan {
@@ -24,6 +37,7 @@ struct StepPlan {
     Curve1 pelvis_yaw, pelvis_list;  // relative to the heading; list is about the way ahead
     Curve1 arm_swing;  // of the left shoulder, ahead is positive; the right arm's is the negative
     bool runs = false;
+    Halt halt;
     double lean_rad = 0;  // largest forward lean of the trunk during this step beyond the usual
 };
 

@@ -133,6 +133,17 @@ TEST_CASE("every walk of the examples keeps the table of good motion [law]") {
 }
 
 TEST_CASE(
+    "legs of a script that pause in the middle of a stride come to rest within the table [law]") {
+    const Example& e = test::example("10_two_legs/sampled.pup");
+    const Measures m = test::measured_on_stage(e, 0, 0, e.end_s());
+    const std::vector<Stretch> stretches = test::stretches_of(e, 0, e.end_s());
+    INFO(test::report(m));
+    check_always(m);
+    CHECK(check_swings(m, stretches) == 4);
+    CHECK(m.knee_stance_deg.value <= 40);  // over the front foot, the other one on its toes
+}
+
+TEST_CASE(
     "feet stand for the duty factor's part of the period, to a frame, as seen and as told "
     "[law]") {
     struct Walker {

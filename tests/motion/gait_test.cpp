@@ -107,6 +107,43 @@ TEST_CASE("the walk keeps every figure of good motion, at all heights and step c
     }
 }
 
+TEST_CASE("a walk whose next step is late comes to rest, and goes on, within the table [law]") {
+    for (const double height : {1.5, 1.6, 1.75, 1.9}) {
+        for (const double pause_s : {0.05, 0.2, 0.6, 2.0}) {
+            const figure::Figure f = figure::make_mannequin(height);
+            Chain chain(f, standing(f, {}, 0));
+            Side side = Side::kRight;
+            for (const StepKind kind :
+                 {StepKind::kFirstHalf, StepKind::kWhole, StepKind::kWhole, StepKind::kLastHalf}) {
+                // A stroke that suits the legs; long ones for short legs stop up to twice as hard.
+                const StepSpec spec{
+                    .transfer = side, .kind = kind, .stroke_m = 0.6 * std::fmin(1, height / 1.75)};
+                chain.run({make_step(chain.context(), spec)}, step_duration_s(spec) + pause_s);
+                side = other(side);
+            }
+            const Measures m = chain.measured();
+            CAPTURE(height);
+            CAPTURE(pause_s);
+            INFO(report(m));
+            CHECK(m.slip_mm.value < 1);
+            CHECK(m.sink_mm.value < 2);
+            CHECK(m.hover_mm.value < 2);
+            CHECK(m.swing_sink_mm.value < 2);
+            CHECK(m.pelvis_acceleration.value <= 4.0);
+            CHECK(m.knee.speed_rad_s.value <= 10);
+            CHECK(m.hip.speed_rad_s.value <= 6);
+            CHECK(m.ankle.speed_rad_s.value <= 8);
+            for (const JointMeasures* j : {&m.knee, &m.hip, &m.ankle, &m.spine, &m.neck, &m.arm}) {
+                CHECK(j->acceleration_rad_s2.value <= 400);
+            }
+            CHECK(m.join_acceleration_ratio.value <= 1.5);
+            CHECK(m.join_position_m.value <= 1e-6);
+            CHECK(m.join_pelvis_m_s.value <= 0.05);
+            CHECK(m.limit_excess_deg.value <= 1e-4);
+        }
+    }
+}
+
 TEST_CASE("feet are planted for the duty factor's part of the period, to a frame [oracle]") {
     const figure::Figure f = figure::make_mannequin(1.75);
     const Walk w{.steps = 5};
