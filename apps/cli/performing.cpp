@@ -160,8 +160,13 @@ Result<Staged, int> load_and_perform(const Arguments& arguments) {
 }
 
 int status_of_fault(const Diagnostic& fault) {
-    return fault.code == "equations-blow-up" || fault.code == "crossings-accumulate" ? kBadInput
-                                                                                     : kFailed;
+    for (const char* code : {"equations-blow-up", "crossings-accumulate", "not-baked",
+                             "stale-course", "no-sundials"}) {
+        if (fault.code == code) {
+            return kBadInput;
+        }
+    }
+    return kFailed;
 }
 
 std::string ending_of(const std::string& path) {

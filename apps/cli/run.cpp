@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // `puppetri run SCENE`: performs a scene and tells what happened: log, score, hash, a chart.
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "commands.h"
 #include "interrupt.h"
@@ -14,8 +16,10 @@
 #include "puppetri/io/atomic_file.h"
 #include "puppetri/io/disk_files.h"
 #include "puppetri/notation/foreign_file.h"
+#include "puppetri/run/course_book.h"
 #include "puppetri/scene/events.h"
 #include "puppetri/scene/perform.h"
+#include "puppetri/scene/sundials.h"
 #include "puppetri/sim/meter.h"
 #include "puppetri/verdict/explain.h"
 #include "run_net.h"
@@ -61,6 +65,35 @@ void say_notes(const Diagnostics& notes) {
     }
 }
 
+// The files that the equations of a scene play off, written anew: each with the parts of those that
+// name it. Gives   whether all could be written.
+bool write_baked(const scene::Scene& scene, run::CourseBook made) {
+    std::map<std::string, run::CourseBook> books;
+    std::size_t part = 0;
+    for (const run::EquationSystem& s : scene.equations) {
+        if (!s.baked_in.empty()) {
+            run::CourseBook& book = books[s.baked_in];
+            book.solver = scene::sundials_version();
+            book.parts.push_back(std::move(made.parts[part++]));
+        }
+    }
+    for (const auto& [path, book] : books) {
+        if (!write_or_say(path, run::write_courses(book))) {
+            return false;
+        }
+        say("baked " + path);
+    }
+    return true;
+}
+
+// What baking is about to mend needs no telling.
+Diagnostics but_for_baking(Diagnostics notes) {
+    std::erase_if(notes, [](const Diagnostic& d) {
+        return d.code == "not-baked" || d.code == "stale-course";
+    });
+    return notes;
+}
+
 // Each firing of a witness, with what begins by it.
 void tell_story(const std::string& path, const scene::Scene& scene) {
     if (const auto witness = load_witness(path, scene.net); witness) {
@@ -83,12 +116,23 @@ int run(const Arguments& arguments) {
         say_diagnostics(scene.error());
         return kBadInput;
     }
-    say_diagnostics(scene->notes);
+    say_diagnostics(arguments.given("--bake") ? but_for_baking(scene->notes) : scene->notes);
     auto options = perform_options(arguments, *scene);
     if (!options) {
         return options.error();
     }
     options->record = arguments.given("--record");
+    run::CourseBook baked;
+    if (arguments.given("--bake")) {
+        if (std::none_of(scene->equations.begin(), scene->equations.end(),
+                         [](const run::EquationSystem& s) { return !s.baked_in.empty(); })) {
+            say_error(
+                "--bake: no equations of this scene name a file: write `solver stiff by sundials` "
+                "and `baked \"NAME.courses\"` among their lines");
+            return kBadInput;
+        }
+        options->bake = &baked;
+    }
     std::optional<CsvLog> log;
     if (arguments.given("--log")) {
         const std::string path = arguments.text("--log");
@@ -146,6 +190,9 @@ int run(const Arguments& arguments) {
                             scene::write_event_list(result.recording, result.seed,
                                                     scene::event_names(scene->net))) &&
                good;
+    }
+    if (options->bake != nullptr && !result.fault && !result.interrupted) {
+        good = write_baked(*scene, std::move(baked)) && good;
     }
     say_notes(result.notes);
     if (result.fault) {
@@ -212,6 +259,9 @@ Command run_command() {
           "play the run of a witness that `puppetri prove` has written, step by step", false},
          {"--measure", Value::kTexts, "MEASURE",
           "what to measure, as `puppetri sweep` says; without: what the scene declares", false},
+         {"--bake", Value::kFlag, "",
+          "solve `solver stiff by sundials` here and write the files that the scene names `baked`",
+          false},
          {"--hash", Value::kFlag, "", "print the fingerprint of the log alone", false},
          {"--json", Value::kFlag, "", "the summary as JSON on stdout", false},
          file_option()},

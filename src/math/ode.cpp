@@ -45,7 +45,12 @@ double OdeStep::at(double ratio, std::uint32_t variable) const {
     if (method == OdeMethod::kDormandPrince) {
         return r[0] + s * (r[size] + s1 * (r[2 * size] + s * (r[3 * size] + s1 * r[4 * size])));
     }
-    return r[0] * s1 + s * (r[size] + s1 * (r[2 * size] + s * r[3 * size]));
+    std::size_t row = rows.size() / size - 1;
+    double inner = row < 2 ? 0 : r[row * size];
+    while (row > 2) {
+        inner = r[--row * size] + s * inner;
+    }
+    return r[0] * s1 + s * (r[size] + s1 * inner);
 }
 
 OdeStep OdeStep::constant(double begin_s, double length_s, std::span<const double> x) {

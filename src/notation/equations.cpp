@@ -18,7 +18,7 @@ constexpr const char* kForms =
     "one of `x starts at 1 m`, `x.rate = v`, `x.next = 2*x every 0.1 s`, `x.before = 1 m`, "
     "`name = x + y`, `event hit when x falls through 0 m`, `sensor high when x > 1 m`, "
     "`on hit set x := 0 m`, `while PLACE`, `ball.position = (0 m, x, 0 m)`, `solver stiff`, "
-    "`tolerance 1e-6`, `steps at most 10 ms`";
+    "`solver stiff by sundials`, `baked \"x.courses\"`, `tolerance 1e-6`, `steps at most 10 ms`";
 
 bool is_word(const Expr& e, std::string_view text) {
     return e.kind == ExprKind::kPath && e.path.steps.size() == 1 && e.path.steps[0].text == text &&
@@ -196,7 +196,14 @@ class Reader {
             end(true);
         } else if (first == "solver") {
             lines_.stiff = word("stiff");
+            lines_.by_sundials = word("by") && word("sundials");
+            lines_.solver_span = p.span;
             end(lines_.stiff);
+        } else if (first == "baked") {
+            const auto file = value();
+            if (end(file && file->kind == ExprKind::kString)) {
+                lines_.baked = *file;
+            }
         } else if (first == "tolerance") {
             const auto size = value();
             if (end(size.has_value())) {

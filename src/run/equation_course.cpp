@@ -29,8 +29,12 @@ double as_real(ValueKind kind, Value v) {
 
 }  // namespace
 
-Equations::Course::Course(const EquationSystem& system, const EquationsOptions& options)
-    : system_(system), options_(options), n_(system.variables.size()), solver_([&] {
+Equations::Course::Course(const EquationSystem& system, const EquationsOptions& options,
+                          std::unique_ptr<StepSource> source)
+    : system_(system),
+      options_(options),
+      n_(system.variables.size()),
+      solver_([&] {
           OdeOptions o = system.options;
           o.watched_from = static_cast<std::uint32_t>(system.variables.size());
           for (const EquationSystem::Past& p : system.pasts) {
@@ -38,7 +42,8 @@ Equations::Course::Course(const EquationSystem& system, const EquationsOptions& 
               o.most_s = std::min(o.most_s, p.ago_s);
           }
           return o;
-      }()) {
+      }()),
+      source_(std::move(source)) {
     for (const EquationSystem::Past& p : system.pasts) {
         longest_delay_s_ = std::max(longest_delay_s_, p.ago_s);
     }
@@ -323,13 +328,73 @@ bool Equations::Course::restart(double t_s, bool enabled, bool new_data, Diagnos
     return look_after_restart(t_s, first, fault);
 }
 
-bool Equations::Course::start_solver(double t_s, std::span<const double> x, Diagnostic& fault) {
-    if (solver_.start(*this, t_s, x)) {
+// ---- steps: of our own, or from elsewhere
+
+bool Equations::Course::told(StepSource::Outcome outcome, double t_s, bool begins,
+                             std::span<const double> x, Diagnostic& fault) const {
+    if (outcome == StepSource::Outcome::kStepped) {
         return true;
     }
-    fault = problem("equations-blow-up", t_s, "the rates have no value, with " + state_text(x),
-                    "look at what they divide by, and what they take roots and logarithms of");
+    if (outcome == StepSource::Outcome::kUnknown) {
+        StepSource::Why why = source_->why();
+        fault = problem(why.code.c_str(), t_s, std::move(why.message), std::move(why.remedy));
+        return false;
+    }
+    fault =
+        begins ? problem("equations-blow-up", t_s, "the rates have no value, with " + state_text(x),
+                         "look at what they divide by, and what they take roots and logarithms "
+                         "of")
+               : problem("equations-blow-up", t_s, "the solution ends, with " + state_text(x),
+                         "stop it before, by an event that resets it, or look at the signs; "
+                         "equations with very fast and slow parts need `solver stiff`");
     return false;
+}
+
+bool Equations::Course::start_solver(double t_s, std::span<const double> x, Diagnostic& fault) {
+    using Outcome = StepSource::Outcome;
+    if (source_ == nullptr) {
+        return told(solver_.start(*this, t_s, x) ? Outcome::kStepped : Outcome::kBlewUp, t_s, true,
+                    x, fault);
+    }
+    segment_ = {t_s, next_stop(t_s), 0, {x.begin(), x.end()}, data_, false};
+    return begin_segment(fault);
+}
+
+// The source begins where segment_ says, and goes on to where it says.
+bool Equations::Course::begin_segment(Diagnostic& fault) {
+    Segment& s = segment_;
+    if (!told(source_->start(*this, s.begin_s, s.until_s, s.x, s.data), s.begin_s, true, s.x,
+              fault)) {
+        return false;
+    }
+    OdeStep step;
+    for (std::uint64_t k = 0; k < s.steps; ++k) {
+        if (!told(source_->step(*this, step), s.begin_s, false, s.x, fault)) {
+            return false;
+        }
+    }
+    s.live = true;
+    return true;
+}
+
+bool Equations::Course::step_solver(double begin_s, std::span<const double> x, OdeStep& out,
+                                    double& end_s, Diagnostic& fault) {
+    using Outcome = StepSource::Outcome;
+    if (source_ == nullptr) {
+        const bool stepped =
+            solver_.step(*this, next_stop(begin_s), out) == OdeSolver::Outcome::kStepped;
+        end_s = solver_.now_s();
+        return told(stepped ? Outcome::kStepped : Outcome::kBlewUp, begin_s, false, x, fault);
+    }
+    if (!segment_.live && !begin_segment(fault)) {
+        return false;
+    }
+    if (!told(source_->step(*this, out), begin_s, false, x, fault)) {
+        return false;
+    }
+    ++segment_.steps;
+    end_s = source_->now_s();
+    return true;
 }
 
 void Equations::Course::push_kinks(double t_s, std::uint32_t degree) {
@@ -440,14 +505,9 @@ bool Equations::Course::extend(Diagnostic& fault) {
         piece.step = OdeStep::constant(begin_s, kForEver, x);
         piece.end_s = next_stop(begin_s);
     } else {
-        if (solver_.step(*this, next_stop(begin_s), piece.step) != OdeSolver::Outcome::kStepped) {
-            fault =
-                problem("equations-blow-up", begin_s, "the solution ends, with " + state_text(x),
-                        "stop it before, by an event that resets it, or look at the signs; "
-                        "equations with very fast and slow parts need `solver stiff`");
+        if (!step_solver(begin_s, x, piece.step, piece.end_s, fault)) {
             return false;
         }
-        piece.end_s = solver_.now_s();
     }
     pieces_.push_back(std::move(piece));
     return true;
@@ -460,6 +520,20 @@ bool Equations::Course::carry_to(double t_s, Diagnostic& fault) {
         }
     }
     return true;
+}
+
+bool Equations::Course::add_given(double t_s, Hash64& hash) const {
+    bool any = false;
+    for (const Piece& p : pieces_) {
+        if (p.step.method == OdeMethod::kGiven && p.step.begin_s < t_s) {
+            any = true;
+            hash.add_f64(p.step.begin_s).add_f64(p.step.length_s);
+            for (const double x : p.step.rows) {
+                hash.add_f64(x);
+            }
+        }
+    }
+    return any;
 }
 
 std::string Equations::Course::state_text(std::span<const double> x) const {

@@ -5,17 +5,22 @@
 // difference equations, at kinks that come back through delays, and at changes.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "puppetri/base/hash.h"
 #include "puppetri/run/equations.h"
+#include "puppetri/run/step_source.h"
 
 namespace puppetri::run {
 
 class Equations::Course final : public OdeSystem {
  public:
-    Course(const EquationSystem& system, const EquationsOptions& options);
+    // `source` is null but for OdeMethod::kGiven.
+    Course(const EquationSystem& system, const EquationsOptions& options,
+           std::unique_ptr<StepSource> source);
 
     void fired(net::TransitionIndex transition);
     bool next(const net::State& state, SimTime until, Diagnostic& fault);
@@ -32,6 +37,8 @@ class Equations::Course final : public OdeSystem {
 
     void save(std::vector<std::uint8_t>& out) const;
     bool restore(std::span<const std::uint8_t> bytes);
+    // Adds all steps of the source up to t_s; false if there are none.
+    bool add_given(double t_s, Hash64& hash) const;
 
     // The right sides.
     std::uint32_t size() const override { return static_cast<std::uint32_t>(n_); }
@@ -90,6 +97,11 @@ class Equations::Course final : public OdeSystem {
     void pass_roots();
     void crosses(std::uint32_t event, int side, double root_s);
     bool wanted(const EquationSystem::Event& event, int side) const;
+    bool step_solver(double begin_s, std::span<const double> x, OdeStep& out, double& end_s,
+                     Diagnostic& fault);
+    bool begin_segment(Diagnostic& fault);
+    bool told(StepSource::Outcome outcome, double t_s, bool begins, std::span<const double> x,
+              Diagnostic& fault) const;
     std::string state_text(std::span<const double> x) const;
     Diagnostic problem(const char* code, double t_s, std::string message, std::string remedy) const;
 
@@ -107,6 +119,14 @@ class Equations::Course final : public OdeSystem {
     std::vector<std::vector<double>> data_rows_;
     std::vector<double> data_;  // as they were read last
     OdeSolver solver_;
+    // Instead of solver_, and what it began with last: enough to come to the same step again.
+    std::unique_ptr<StepSource> source_;
+    struct Segment {
+        double begin_s = 0, until_s = 0;
+        std::uint64_t steps = 0;
+        std::vector<double> x, data;
+        bool live = false;  // the source stands where this says; else it must come there first
+    } segment_;
     std::vector<Kink> kinks_;  // to come, in order of time
     std::vector<int> sides_;   // per event: below -1, above 1, not known yet 0
     double searched_s_ = 0;    // up to here, in piece cursor_, all crossings have been found

@@ -1,80 +1,26 @@
 // SPDX-License-Identifier: MIT
 // A course as bytes: what decides its future, and the past as far as delays look.
 #include <algorithm>
-#include <cstring>
 
+#include "bytes.h"
 #include "equation_course.h"
 
 namespace puppetri::run {
 namespace {
 
-class Writer {
- public:
-    explicit Writer(std::vector<std::uint8_t>& out) : out_(out) {}
-    void number(std::uint64_t x) {
-        for (int i = 0; i < 8; ++i) {
-            out_.push_back(static_cast<std::uint8_t>(x >> (8 * i)));
-        }
-    }
-    void real(double x) { number(static_cast<std::uint64_t>(value_of_real(x))); }
-    void reals(std::span<const double> list) {
-        number(list.size());
-        for (const double x : list) {
-            real(x);
-        }
-    }
+constexpr std::uint64_t kMostSteps = 1u << 24;  // of one segment, to be made again
 
- private:
-    std::vector<std::uint8_t>& out_;
-};
-
-class BytesReader {
- public:
-    explicit BytesReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-    std::uint64_t number() {
-        if (bytes_.size() < 8) {
-            good = false;
-            return 0;
-        }
-        std::uint64_t x = 0;
-        for (int i = 0; i < 8; ++i) {
-            x |= static_cast<std::uint64_t>(bytes_[static_cast<std::size_t>(i)]) << (8 * i);
-        }
-        bytes_ = bytes_.subspan(8);
-        return x;
-    }
-    double real() {
-        const double x = real_of_value(static_cast<Value>(number()));
-        good = good && x - x == 0;
-        return x;
-    }
-    // How many of something that takes at least 8 bytes each.
-    std::size_t count(std::uint64_t least = 0, std::uint64_t most = ~std::uint64_t{0}) {
-        const std::uint64_t n = number();
-        if (n > bytes_.size() / 8 || n < least || n > most) {
-            good = false;
-            return 0;
-        }
-        return static_cast<std::size_t>(n);
-    }
-    std::vector<double> reals() {
-        std::vector<double> out(count());
-        for (double& x : out) {
-            x = real();
-        }
-        return out;
-    }
-    bool at_end() const { return bytes_.empty(); }
-    bool good = true;
-
- private:
-    std::span<const std::uint8_t> bytes_;
-};
+// How many rows interpolants have; one row is a step in which nothing changes.
+bool fits(OdeMethod method, std::size_t rows) {
+    return rows == 1 || (method == OdeMethod::kDormandPrince ? rows == 5
+                         : method == OdeMethod::kRodas       ? rows == 4
+                                                             : rows >= 2 && rows <= 8);
+}
 
 }  // namespace
 
 void Equations::Course::save(std::vector<std::uint8_t>& out) const {
-    Writer w(out);
+    BytesWriter w(out);
     w.number(n_);
     w.number((begun_ ? 1u : 0u) + (enabled_ ? 2u : 0u) + (delivered_ ? 4u : 0u));
     const double from_s =
@@ -90,7 +36,7 @@ void Equations::Course::save(std::vector<std::uint8_t>& out) const {
         w.real(p.end_s);
         w.real(p.step.begin_s);
         w.real(p.step.length_s);
-        w.number((p.step.method == OdeMethod::kRodas ? 1u : 0u) + (p.jump ? 2u : 0u));
+        w.number(static_cast<std::uint64_t>(p.step.method) * 4 + (p.jump ? 2u : 0u));
         w.reals(p.step.rows);
         w.reals(data_rows_[p.data]);
     }
@@ -99,6 +45,13 @@ void Equations::Course::save(std::vector<std::uint8_t>& out) const {
     w.real(solver_.now_s());
     w.real(solver_.next_s());
     w.reals(solver_.x());
+    if (system_.options.method == OdeMethod::kGiven) {
+        w.real(segment_.begin_s);
+        w.real(segment_.until_s);
+        w.number(segment_.steps);
+        w.reals(segment_.x);
+        w.reals(segment_.data);
+    }
     w.number(kinks_.size());
     for (const Kink& k : kinks_) {
         w.real(k.at_s);
@@ -133,7 +86,7 @@ bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
         return false;
     }
     const std::uint64_t flags = r.number();
-    Course made(system_, options_);
+    Course made(system_, options_, nullptr);
     made.begun_ = (flags & 1) != 0;
     made.enabled_ = (flags & 2) != 0;
     made.delivered_ = (flags & 4) != 0;
@@ -143,7 +96,8 @@ bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
         p.step.begin_s = r.real();
         p.step.length_s = r.real();
         const std::uint64_t kind = r.number();
-        p.step.method = (kind & 1) != 0 ? OdeMethod::kRodas : OdeMethod::kDormandPrince;
+        r.good = r.good && kind / 4 <= static_cast<std::uint64_t>(OdeMethod::kGiven);
+        p.step.method = static_cast<OdeMethod>(kind / 4 % 3);
         p.jump = (kind & 2) != 0;
         p.step.size = static_cast<std::uint32_t>(n_);
         p.step.rows = r.reals();
@@ -151,7 +105,7 @@ bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
         const std::size_t rows = n_ == 0 ? 1 : p.step.rows.size() / n_;
         r.good = r.good && data.size() == system_.data.size() && p.end_s >= p.step.begin_s &&
                  p.step.rows.size() == rows * n_ && p.step.length_s >= 0 &&
-                 (rows == 1 || rows == ((kind & 1) != 0 ? 4u : 5u)) &&
+                 fits(p.step.method, rows) &&
                  (made.pieces_.empty() || made.pieces_.back().step.begin_s <= p.step.begin_s);
         if (made.data_rows_.empty() || made.data_rows_.back() != data) {
             made.data_rows_.push_back(data);
@@ -163,6 +117,17 @@ bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
     made.data_ = r.reals();
     const double now_s = r.real(), next_s = r.real();
     const std::vector<double> x = r.reals();
+    if (system_.options.method == OdeMethod::kGiven) {
+        Segment& s = made.segment_;
+        s.begin_s = r.real();
+        s.until_s = r.real();
+        s.steps = r.number();
+        s.x = r.reals();
+        s.data = r.reals();
+        r.good = r.good && s.until_s >= s.begin_s && s.steps < kMostSteps &&
+                 (s.x.size() == n_ || (s.x.empty() && s.steps == 0)) &&
+                 (s.x.empty() || s.data.size() == system_.data.size());
+    }
     for (std::size_t left = r.count(); left > 0 && r.good; --left) {
         const double at_s = r.real();
         made.kinks_.push_back({at_s, static_cast<std::uint32_t>(r.number())});
@@ -242,7 +207,8 @@ bool Equations::Course::restore(std::span<const std::uint8_t> bytes) {
     crowd_ = made.crowd_;
     last_event_ = made.last_event_;
     near_ = made.near_;
-    if (x.size() == n_ && has_rates_) {
+    segment_ = std::move(made.segment_);
+    if (x.size() == n_ && has_rates_ && system_.options.method != OdeMethod::kGiven) {
         solver_.resume(*this, now_s, x, next_s);
     }
     return true;
@@ -252,7 +218,7 @@ void Equations::save(std::vector<std::uint8_t>& out) const {
     for (const auto& c : courses_) {
         std::vector<std::uint8_t> bytes;
         c->save(bytes);
-        Writer(out).number(bytes.size());
+        BytesWriter(out).number(bytes.size());
         out.insert(out.end(), bytes.begin(), bytes.end());
     }
 }
@@ -267,7 +233,7 @@ bool Equations::restore(std::span<const std::uint8_t> bytes) {
             return false;
         }
         parts.push_back(bytes.subspan(8, static_cast<std::size_t>(size)));
-        Course trial(systems_[i], options_);
+        Course trial(systems_[i], options_, nullptr);
         if (!trial.restore(parts.back())) {
             return false;
         }

@@ -5,13 +5,31 @@
 
 #include "equation_course.h"
 #include "puppetri/base/require.h"
+#include "puppetri/run/course_book.h"
 
 namespace puppetri::run {
 
 Equations::Equations(std::vector<EquationSystem> systems, const EquationsOptions& options)
     : systems_(std::move(systems)), options_(options) {
+    if (options.bake != nullptr) {
+        for (const EquationSystem& s : systems_) {
+            if (!s.baked_in.empty()) {
+                options.bake->parts.push_back({s.path, hash_of(s), 0, {}});
+            }
+        }
+    }
+    std::size_t part = 0;
     for (const EquationSystem& s : systems_) {
-        courses_.push_back(std::make_unique<Course>(s, options));
+        std::unique_ptr<StepSource> source;
+        if (s.options.method == OdeMethod::kGiven) {
+            const bool reads = !s.baked_in.empty() && options.bake == nullptr;
+            PUP_REQUIRE(reads || options.sources != nullptr);
+            source = reads ? baked_source(s) : options.sources->source(s);
+            if (!s.baked_in.empty() && options.bake != nullptr) {
+                source = recording_source(std::move(source), options.bake->parts[part++]);
+            }
+        }
+        courses_.push_back(std::make_unique<Course>(s, options, std::move(source)));
     }
 }
 Equations::~Equations() = default;
@@ -66,6 +84,15 @@ bool Equations::carry_to(SimTime at, Diagnostic& fault) {
         }
     }
     return true;
+}
+
+std::uint64_t Equations::given_hash(SimTime end) const {
+    Hash64 hash;
+    bool any = false;
+    for (const auto& c : courses_) {
+        any = c->add_given(end.seconds(), hash) || any;
+    }
+    return any ? hash.value() : 0;
 }
 
 const std::vector<EquationSystem>& Equations::systems() const { return systems_; }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "puppetri/base/require.h"
+#include "puppetri/scene/sundials.h"
 
 namespace puppetri::scene {
 namespace {
@@ -31,11 +32,13 @@ class Outputs final : public stage::Quantities {
 
 }  // namespace
 
-Beside::Beside(const Scene& scene) : scene_(scene) {
+Beside::Beside(const Scene& scene, run::CourseBook* bake) : scene_(scene) {
     if (scene.equations.empty()) {
         return;
     }
-    equations_ = std::make_shared<run::Equations>(scene.equations);
+    const auto sources = sundials_sources();
+    equations_ = std::make_shared<run::Equations>(
+        scene.equations, run::EquationsOptions{.sources = sources.get(), .bake = bake});
     if (!scene.play.driven_props.empty() || !scene.play.driven_dofs.empty()) {
         quantities_ = std::make_shared<Outputs>(equations_);
     }

@@ -8,6 +8,8 @@
 #include "formula_compiler.h"
 #include "puppetri/base/text.h"
 #include "puppetri/notation/equations.h"
+#include "puppetri/run/course_book.h"
+#include "puppetri/scene/sundials.h"
 
 namespace puppetri::scene {
 
@@ -101,6 +103,7 @@ class EquationsBlock final : public FormulaNames {
         }
         system_.code = std::move(formula_.code);
         system_.locals = std::move(formula_.locals);
+        tell_stale();
         e_.scene.equations.push_back(std::move(system_));
     }
 
@@ -558,6 +561,14 @@ class EquationsBlock final : public FormulaNames {
             o.relative = 1e-7;
             o.absolute = 1e-10;
         }
+        if (lines.by_sundials) {
+            by_sundials(lines);
+        } else if (lines.baked) {
+            e_.error("wrong-type", lines.baked.span,
+                     "courses are baked of equations that SUNDIALS solves; all others are the same "
+                     "everywhere",
+                     "write `solver stiff by sundials` as well, or leave this line out");
+        }
         if (lines.tolerance) {
             const auto size = e_.constant_number(lines.tolerance, scope_, lang::dimension::kNone,
                                                  "the tolerance");
@@ -580,8 +591,54 @@ class EquationsBlock final : public FormulaNames {
         }
     }
 
+    void by_sundials(const EquationLines& lines) {
+        // Errors of a multistep method add up over many short steps.
+        system_.options.method = OdeMethod::kGiven;
+        system_.options.relative = OdeOptions().relative;
+        system_.options.absolute = OdeOptions().absolute;
+        if (!system_.pasts.empty()) {
+            e_.error("wrong-type", lines.solver_span,
+                     "the method of SUNDIALS does not look back, and `past` does",
+                     "write `solver stiff`, which knows delays");
+        }
+        if (!lines.baked) {
+            if (sundials_version().empty()) {
+                e_.error("no-sundials", lines.solver_span, "this build has no SUNDIALS",
+                         kSundialsRemedy);
+            }
+            return;
+        }
+        const lang::File& file = e_.library_.files[lines.baked.span.file];
+        system_.baked_in = e_.library_.source->resolve(file.filename, lines.baked.text);
+        baked_span_ = lines.baked.span;
+        if (const auto bytes = e_.library_.source->read(system_.baked_in); bytes) {
+            auto book = run::read_courses(*bytes, system_.baked_in);
+            if (!book) {
+                for (Diagnostic& d : book.error()) {
+                    d.where = e_.at(baked_span_);
+                    e_.diagnostics.push_back(std::move(d));
+                }
+                return;
+            }
+            system_.baked = std::make_shared<const run::CourseBook>(std::move(*book));
+        }
+    }
+
+    // Nothing is wrong with the scene: it may be about to be baked.
+    void tell_stale() {
+        if (system_.baked_in.empty()) {
+            return;
+        }
+        if (auto why = run::not_baked(system_)) {
+            e_.diagnostics.push_back({Severity::kWarning, why->code, e_.at(baked_span_),
+                                      "equations " + system_.path, std::move(why->message),
+                                      std::move(why->remedy)});
+        }
+    }
+
     Elaboration& e_;
     Scope scope_;
+    lang::Span baked_span_;
     motion::FormulaMovement formula_;
     FormulaCompiler compiler_;
     EquationSystem system_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "puppetri/base/hash.h"
+
 namespace puppetri::scene {
 namespace {
 
@@ -42,7 +44,7 @@ Session::Session(const Scene& scene, const PerformOptions& options)
       options_(options),
       horizon_(options.horizon.given() ? options.horizon : scene.horizon),
       limits_(limits_of(horizon_)),
-      beside_(scene),
+      beside_(scene, options.bake),
       stage_(scene.play, beside_.quantities()),
       script_(options.script ? std::optional<net::ScriptedChooser>(*options.script) : std::nullopt),
       player_(scene.net, {.seed = options.seed.value_or(scene.seed),
@@ -93,7 +95,7 @@ bool Session::advance_to(SimTime at) {
 }
 
 void Session::run() {
-    if (options_.go_on == nullptr) {
+    if (options_.go_on == nullptr || options_.bake != nullptr) {
         slice(SimTime::never(), limits_.firings);
         return;
     }
@@ -154,6 +156,10 @@ Checked<Performed> Session::finish() {
     if (!out.fault && !beside_.carry_to(out.end, fault)) {
         out.stop = run::Stop::kFault;
         out.fault = std::move(fault);
+    }
+    if (const std::uint64_t given =
+            beside_.equations() == nullptr ? 0 : beside_.equations()->given_hash(out.end)) {
+        out.log_hash = Hash64().add_u64(out.log_hash).add_u64(given).value();
     }
     out.performance = stage_.finish(out.end);
     return out;

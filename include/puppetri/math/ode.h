@@ -28,7 +28,8 @@ class OdeSystem {
 // kRodas          linearly implicit (Rosenbrock), order 4, stiffly accurate, interpolant of order
 //                 3; its Jacobian is taken by differences. Source: Hairer, Wanner, "Solving
 //                 Ordinary Differential Equations II", IV.7 and IV.10.
-enum class OdeMethod : std::uint8_t { kDormandPrince, kRodas };
+// kGiven          steps that another integrator has made, of any order up to 7; not of OdeSolver.
+enum class OdeMethod : std::uint8_t { kDormandPrince, kRodas, kGiven };
 
 struct OdeOptions {
     OdeMethod method = OdeMethod::kDormandPrince;
@@ -45,7 +46,9 @@ struct OdeStep {
     double begin_s = 0, length_s = 0;
     OdeMethod method = OdeMethod::kDormandPrince;
     std::uint32_t size = 0;
-    std::vector<double> rows;  // of the interpolant, `size` numbers each; the first is x at begin_s
+    // Of the interpolant, `size` numbers each; the first is x at begin_s. With s from 0 to 1, but
+    // for kDormandPrince, r0 (1-s) + s (r1 + (1-s) (r2 + s (r3 + s (r4 + ...)))).
+    std::vector<double> rows;
 
     // `ratio` in [0, 1] of the step; 0 gives exactly the beginning. Cost: no allocation.
     void at(double ratio, std::span<double> x) const;

@@ -68,8 +68,11 @@ struct EquationLines {
     std::vector<Driven> driven;
     std::vector<lang::Path> enabled_by;  // `while flies`, `while up or down`
     bool stiff = false;                  // `solver stiff`
-    lang::Expr tolerance;                // `tolerance 1e-6`
-    lang::Expr longest_step;             // `steps at most 10 ms`
+    bool by_sundials = false;            // `solver stiff by sundials`
+    lang::Span solver_span;
+    lang::Expr baked;         // `baked "reaction.courses"`
+    lang::Expr tolerance;     // `tolerance 1e-6`
+    lang::Expr longest_step;  // `steps at most 10 ms`
 };
 
 // The events that a sensor is set by: `high_begins`, `high_ends`.

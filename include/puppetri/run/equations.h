@@ -16,6 +16,10 @@
 
 namespace puppetri::run {
 
+class StepSource;
+class StepSources;
+struct CourseBook;
+
 // What slots of the programs stand for; every value is a real number in SI units. The first three
 // are those of formulas of movements (motion/formula_movement.h), which the same compiler makes.
 enum class EquationSlot : std::uint32_t {
@@ -80,11 +84,18 @@ struct EquationSystem {
     std::vector<ProgramIndex> outputs;  // what figures and props follow
     Code code;
     OdeOptions options;
+    // With OdeMethod::kGiven: the file of baked courses, as the scene names it, and what it holds;
+    // null if there is no such file. Without a name the steps come from EquationsOptions::sources.
+    std::string baked_in;
+    std::shared_ptr<const CourseBook> baked;
 };
 
 struct EquationsOptions {
     bool record = true;  // keep everything for value() and output(); else as far as delays look
     std::uint32_t crossings_per_ms = 1000;  // of one system; more is an accumulation
+    StepSources* sources = nullptr;         // of systems with OdeMethod::kGiven; while it is made
+    // Where courses of systems that name a file are written down instead of read; outlives it.
+    CourseBook* bake = nullptr;
 };
 
 class Equations final : public Coupled {
@@ -103,6 +114,9 @@ class Equations final : public Coupled {
 
     // The run is over, and nothing changes any more: goes on up to `at`, whatever it crosses.
     bool carry_to(SimTime at, Diagnostic& fault);
+
+    // Of all steps up to `end` that came from elsewhere (OdeMethod::kGiven); 0 if there are none.
+    std::uint64_t given_hash(SimTime end) const;
 
     const std::vector<EquationSystem>& systems() const;
     // A variable, or an output, at any time that next() has gone through; before it as the history

@@ -18,7 +18,8 @@ namespace puppetri::scene {
 
 class Beside {
  public:
-    explicit Beside(const Scene& scene);
+    // `bake`: where courses are written down that the scene would play off files; outlives it.
+    explicit Beside(const Scene& scene, run::CourseBook* bake = nullptr);
     ~Beside();
 
     // Null where nothing is driven. Lives as long as anybody holds it.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "puppetri/net/chooser.h"
+#include "puppetri/run/course_book.h"
 #include "puppetri/run/player.h"
 #include "puppetri/scene/beside.h"
 #include "puppetri/scene/scene.h"
@@ -26,6 +27,9 @@ struct PerformOptions {
     // up, the first option, or what the stream says. Left out: chance decides, from the seed.
     std::optional<std::vector<std::int64_t>> script;
     bool record = false;  // keep the outside events in Performed::recording
+    // Where the courses of equations are written down that the scene would read from files, in one
+    // slice: whoever plays the same later asks for no more.
+    run::CourseBook* bake = nullptr;
     // Asked now and then with the share done: after a twentieth of a second of model time, then,
     // while that takes no time, at ever longer intervals; answering false ends the run cleanly.
     bool (*go_on)(void* context, double share_done) = nullptr;
@@ -38,6 +42,7 @@ struct Performed {
     bool interrupted = false;  // go_on said no
     SimTime end;               // of the take
     std::uint64_t firings = 0;
+    // Of the log; and of the courses of equations that another integrator than our own has made.
     std::uint64_t log_hash = 0;
     std::optional<Diagnostic> fault;  // with kFault: why; the performance reaches to there
     Diagnostics notes;                // of the player and of the stage
