@@ -25,6 +25,20 @@ struct Lowered {
     std::vector<RefinementDraft> refinements;
 };
 
+// Transitions that meet others, and the plain ones that they have become.
+struct Meets {
+    std::uint32_t transition = 0;  // before meeting
+    std::string path;
+    SourceSpan where;
+    std::uint32_t group = 0;  // those of one channel; a rendezvous has a group of its own
+    std::vector<std::uint32_t> products;
+};
+
+// Warns of those that can never fire, since no token ever comes to a place that they need; where
+// others of the group can, it is a word that is not used here, and a note.
+void warn_of_dead_meetings(const NetDraft& net, const std::vector<Meets>& meetings,
+                           Diagnostics& defects);
+
 // What the transitions before became; more or fewer than one only of ends of channels.
 struct Met {
     std::vector<std::vector<std::uint32_t>> products;

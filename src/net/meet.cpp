@@ -18,6 +18,7 @@ class Meeting {
     Meeting(NetDraft& net, Diagnostics& defects) : net_(net), defects_(defects) {}
 
     Met run() {
+        std::vector<Meets> meetings = all_meetings();
         const std::vector<std::uint32_t> first = join_lists();
         const std::vector<std::vector<std::uint32_t>> second = join_channels();
         Met out;
@@ -25,10 +26,36 @@ class Meeting {
         for (const std::uint32_t t : first) {
             out.products.push_back(second.empty() ? std::vector<std::uint32_t>{t} : second[t]);
         }
+        for (Meets& m : meetings) {
+            m.products = out.products[m.transition];
+        }
+        warn_of_dead_meetings(net_, meetings, defects_);
         return out;
     }
 
  private:
+    // The first of each rendezvous, and the ends of channels that send.
+    std::vector<Meets> all_meetings() const {
+        std::vector<Meets> out;
+        std::uint32_t group = 0;
+        const auto add = [&](TransitionIndex t, const SourceSpan& where) {
+            out.push_back({t.value, net_.transitions[t.value].path, where, group, {}});
+        };
+        for (const auto& list : net_.rendezvous) {
+            if (list.size() > 1) {
+                ++group;
+                add(list.front(), net_.transitions[list.front().value].where);
+            }
+        }
+        for (const ChannelDraft& channel : net_.channels) {
+            ++group;
+            for (const ChannelEnd& end : channel.sends) {
+                add(end.transition, end.where);
+            }
+        }
+        return out;
+    }
+
     std::vector<std::uint32_t> join_lists() {
         const auto root = classes(net_.rendezvous, net_.transitions.size());
         for (std::uint32_t i = 0; i < root.size(); ++i) {

@@ -612,15 +612,7 @@ class Cells {
             states.values.push_back(s.name);
         }
         body_.enumerations.push_back(std::move(states));
-        lang::Place clock = make_place(make_name("clock", period_.span));
-        clock.is_public = true;
-        clock.takes = make_duration(period_);
-        give_token(clock);
-        body_.places.push_back(std::move(clock));
-        lang::Transition step =
-            make_transition(make_name("step", period_.span), {make_path("clock", period_.span)},
-                            {make_path("clock", period_.span)});
-        step.is_public = true;
+        lang::Transition step = make_clock(body_, period_);
         for (std::int64_t row = 0; row < grid_.rows; ++row) {
             for (std::int64_t column = 0; column < grid_.columns; ++column) {
                 lang::Data cell;

@@ -161,6 +161,19 @@ lang::Transition make_transition(Name name, std::vector<Path> from, std::vector<
     return out;
 }
 
+lang::Transition make_clock(lang::Body& body, const Expr& period) {
+    lang::Place clock = make_place(make_name("clock", period.span));
+    clock.is_public = true;
+    clock.takes = make_duration(period);
+    give_token(clock);
+    body.places.push_back(std::move(clock));
+    lang::Transition step =
+        make_transition(make_name("step", period.span), {make_path("clock", period.span)},
+                        {make_path("clock", period.span)});
+    step.is_public = true;
+    return step;
+}
+
 lang::Binding make_assignment(Path datum, Expr value) {
     const Span span = datum.span;
     return {std::move(datum), std::move(value), span};

@@ -43,6 +43,9 @@ void give_token(lang::Place& place);
 lang::Duration make_duration(const lang::Expr& value);
 lang::Transition make_transition(lang::Name name, std::vector<lang::Path> from,
                                  std::vector<lang::Path> to);
+// A place `clock` whose token is ready once every period, in the net; gives the public transition
+// `step` that takes and returns it, not yet in the net.
+lang::Transition make_clock(lang::Body& body, const lang::Expr& period);
 lang::Binding make_assignment(lang::Path datum, lang::Expr value);
 
 }  // namespace puppetri::notation

@@ -300,15 +300,7 @@ class Pulses {
     }
 
     void make() {
-        lang::Place clock = make_place(make_name("clock", period_.span));
-        clock.is_public = true;
-        clock.takes = make_duration(period_);
-        give_token(clock);
-        body_.places.push_back(std::move(clock));
-        lang::Transition step =
-            make_transition(make_name("step", period_.span), {make_path("clock", period_.span)},
-                            {make_path("clock", period_.span)});
-        step.is_public = true;
+        lang::Transition step = make_clock(body_, period_);
         std::vector<Expr> pulse(vertices_.size());  // of the next step
         const auto add = [](Expr& sum, Expr more) {
             sum = sum ? make_binary(Op::kAdd, std::move(sum), std::move(more)) : std::move(more);

@@ -80,6 +80,33 @@ TEST_CASE(
     CHECK(has(m.codes(), "rendezvous-disagree"));
 }
 
+TEST_CASE("a rendezvous that lacks a token for ever is warned of, and no other [unit]") {
+    const auto notes = [](bool comes) {
+        Maker m;
+        m.place("p", 1);
+        m.place("far", 1);
+        m.place("q");
+        m.place("lonely");
+        m.t("a.meet", {"p"}, {"p"});
+        m.t("b.meet", {"q"}, {"q"});
+        // Over two steps, and through a place that is another's under a second name.
+        m.place("way");
+        m.place("q2");
+        m.t("first", {comes ? "far" : "lonely"}, {"way"});
+        m.t("second", {"way"}, {"q2"});
+        m.t("back", {"q"}, {"lonely"});
+        m.draft.fusions.push_back({m.p("q"), m.p("q2")});
+        m.draft.rendezvous.push_back({m.index("a.meet"), m.index("b.meet")});
+        return m.net().notes();
+    };
+    CHECK(notes(true).empty());
+    const Diagnostics never = notes(false);
+    REQUIRE(never.size() == 1);
+    CHECK(never[0].code == "rendezvous-never");
+    CHECK(never[0].severity == Severity::kWarning);
+    CHECK(never[0].element == "transition a.meet");
+}
+
 TEST_CASE(
     "a holding time is begin, busy, end: tests at the begin, gifts and assignments at the end "
     "[unit]") {

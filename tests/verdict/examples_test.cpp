@@ -75,6 +75,18 @@ TEST_CASE("every rule of the walk and of the ball game is proved [agree]") {
     }
 }
 
+TEST_CASE("what a tuple space and an event graph say of their figures is proved [agree]") {
+    for (const char* name : {"19_tuple_space/yard.pup", "11_barber_shop/events.pup"}) {
+        const Example e(name);
+        for (const Verdict& v : e.verdicts) {
+            if (v.rule.rfind("builtin.", 0) != 0) {
+                CHECK_MESSAGE(v.answer == Answer::kProved,
+                              name << ": " << v.rule << " " << name_of(v) << " " << v.reason);
+            }
+        }
+    }
+}
+
 TEST_CASE("throwing without looking is refuted: P9 fills up [agree]") {
     const Example e("03_ball/impatient.pup");
     CHECK_MESSAGE(e.of("bounds").answer == Answer::kRefuted, e.of("bounds").reason);
