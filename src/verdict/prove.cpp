@@ -690,7 +690,7 @@ class Prover {
             }
             return;
         }
-        caught.witness->says = f.reason;
+        caught.witness->says = caught.reason;
         if (f.target == Target::kHopeless) {  // long enough to see that nothing comes any more
             constexpr SimTime kWaiting{8 * kTicksPerSecond};
             caught.witness->until = caught.witness->until + kWaiting;
@@ -702,7 +702,7 @@ class Prover {
         const bool possible = f.proves || (w.asked.question == Question::kRule &&
                                            w.asked.rule.kind == net::RuleKind::kPossible);
         w.verdict.answer = possible ? Answer::kProved : Answer::kRefuted;
-        w.verdict.reason = possible ? "" : f.reason;
+        w.verdict.reason = possible ? "" : caught.reason;
     }
 
     // A run for each transition.

@@ -129,7 +129,8 @@ class Attempt {
                     "the run stops: " + player_.fault().message +
                     (player_.fault().element.empty() ? "" : " (" + player_.fault().element + ")");
                 if (hunt_.fault_counts != nullptr && hunt_.fault_counts(player_.fault().code)) {
-                    return found(player_.firings());
+                    reason = player_.fault().message;
+                    return found(steps_.size());  // the firing that cannot be is none
                 }
                 break;
             }
@@ -516,6 +517,7 @@ Caught pursue(const Theatre& theatre, const Hunt& hunt, const PursueLimits& limi
             const Replayed again = replay(theatre, w, hunt);
             if (again.breaks) {
                 out.witness = std::move(w);
+                out.reason = attempt.faulted() ? attempt.reason : f.reason;
                 return out;
             }
             out.reason = "a run was found but did not replay: " + again.trouble;

@@ -42,6 +42,8 @@ struct ProvedScene {
             const bool possible = v.reason.find("never fires") != std::string::npos ||
                                   v.reason.find("no run") != std::string::npos;
             CHECK_MESSAGE((v.witness.has_value() || possible), rule << ": " << v.reason);
+            CHECK((!v.witness || v.witness->violates_after == Witness::kNone ||
+                   v.witness->violates_after <= v.witness->steps.size()));
         }
         return name_of(v) + (v.answer == Answer::kUnknown ? " (" + v.reason + ")" : "");
     }

@@ -219,6 +219,12 @@ place a  takes 1 s  tokens 1
 t: a -> a  set n := n + 1
 )");
     CHECK(s.says("builtin.data_in_range") == "REFUTED");
+    // Two firings are fine; the third, at 3 s, cannot be and is none of the run's.
+    const Verdict& refuted = s.of("builtin.data_in_range");
+    CHECK(refuted.reason.find("n would leave its range, at 3.000000 s") != std::string::npos);
+    REQUIRE(refuted.witness.has_value());
+    CHECK(refuted.witness->steps.size() == 2);
+    CHECK(refuted.witness->violates_after == 2);
     const ProvedScene good(R"(
 data n: 0 .. 2 = 0
 place a  takes 1 s  tokens 1

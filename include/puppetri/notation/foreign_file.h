@@ -17,9 +17,9 @@ struct ForeignFormat {
     // `out` has name, text and lines of the file; `file` is the number of its spans. Adds the body,
     // perhaps a header, and the diagnostics; with an error the tree is not elaborated.
     void (*read)(lang::Parsed& out, std::uint32_t file);
-    // What the lines of `use "x.ending" as NAME { NAME: VALUE }` come to beside it: adds to the body
-    // that has the use, and takes the arguments that are no parameters of the file's net. Null: all
-    // of them are.
+    // What the lines of `use "x.ending" as NAME { NAME: VALUE }` come to beside it: adds to the
+    // body that has the use, and takes the arguments that are no parameters of the file's net.
+    // Null: all of them are.
     void (*bind)(lang::Body& body, lang::Use& use, const lang::Net& net, const lang::File& file,
                  Diagnostics& diagnostics) = nullptr;
 };
