@@ -39,6 +39,7 @@ class Automaton {
                                        : "an automaton is in one state at a time",
                           "write `starts` behind exactly one state");
         }
+        states_.make_ways();
         states_.check();
     }
 

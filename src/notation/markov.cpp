@@ -57,6 +57,7 @@ class Markov {
         for (std::size_t i = 0; i < states_.size(); ++i) {
             complete(i);
         }
+        states_.make_ways();
         begin();
     }
 
@@ -295,6 +296,7 @@ class Markov {
             return;
         }
         lang::Place start = make_place(make_name("begins", block_.name.span));
+        start.role = lang::Role::kStart;
         give_token(start);
         start.is_public = true;
         body_.places.push_back(std::move(start));

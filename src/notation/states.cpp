@@ -71,10 +71,20 @@ std::optional<States::Edge> States::edge(Line& line) {
 }
 
 void States::end(std::size_t state) {
+    ends_.push_back(state);
     lang::End end;
     end.formulas.push_back(make_reference(place(state).name.text, place(state).span));
     end.span = place(state).span;
     body_.ends.push_back(std::move(end));
+}
+
+void States::make_ways() {
+    if (begins_.size() == 1) {
+        place(begins_[0]).role = lang::Role::kStart;
+    }
+    if (ends_.size() == 1 && (begins_.size() != 1 || ends_ != begins_)) {
+        place(ends_[0]).role = lang::Role::kFinish;
+    }
 }
 
 void States::check() {

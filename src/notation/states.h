@@ -42,6 +42,9 @@ class States {
     void enter(std::size_t state) { begins_.push_back(state); }
     // Whoever rests in this state for ever is at an end.
     void end(std::size_t state);
+    // Where a place runs the whole: the way in, unless it has one, is the one state in which it
+    // begins; the way out the one in which it ends.
+    void make_ways();
     // Warns of states that no way leads to from where it may begin.
     void check();
 
@@ -53,7 +56,7 @@ class States {
     const std::string whole_, form_;
     std::map<std::string, std::size_t> numbers_;
     std::vector<std::size_t> places_;  // in the body
-    std::vector<std::size_t> begins_;
+    std::vector<std::size_t> begins_, ends_;
     std::vector<std::vector<std::size_t>> next_;  // by state
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include "playing.h"
 #include "puppetri/notation/notation.h"
 
@@ -74,6 +76,25 @@ automaton m {
     CHECK(list[0].code == "never-entered");
     CHECK(list[0].where.line == 7);
     CHECK(list[1].where.line == 8);
+}
+
+TEST_CASE("automata and chains do the work of a place or of a machine's state [unit]") {
+    for (const char* inner : {"automaton inner {\n  a takes 2 s starts\n  b takes 1 s\n  c final\n"
+                              "  a -> b\n  b -> c\n}\n",
+                              "markov inner {\n  every 1 s\n  a starts\n  a2\n  b\n  c final\n"
+                              "  a -> a2 1\n  a2 -> b 1\n  b -> c 1\n}\n"}) {
+        const std::vector<std::string> log = log_of(
+            std::string("until 20 s\nuse m\nplace p runs inner() tokens 1\nplace q\ngo: p -> q\n") +
+                "machine m {\n  state s starts runs inner()\n  state t takes 1 s\n  out: s -> t\n"
+                "  back: t -> s\n}\n" +
+                inner,
+            20);
+        INFO(inner);
+        CHECK(std::count(log.begin(), log.end(), "3 s go") == 1);
+        CHECK(std::count(log.begin(), log.end(), "3 s m.out") == 1);
+        CHECK(std::count(log.begin(), log.end(), "7 s m.out") == 1);
+        CHECK(std::count(log.begin(), log.end(), "15 s m.out") == 1);
+    }
 }
 
 TEST_CASE("every kind of notation is found, in alphabetical order [unit]") {
