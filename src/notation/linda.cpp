@@ -43,6 +43,11 @@ std::string form_of(const LindaKind& kind) {
     return form + (kind.fields.empty() ? "" : ")");
 }
 
+bool is_ends(const Property& p) {
+    return p.name.steps.size() == 1 && p.name.steps[0].text == "ends" && p.values.empty() &&
+           !p.has_children;
+}
+
 bool compatible(const LindaPattern& a, const LindaPattern& b) {
     if (a.kind != b.kind || a.constants.size() != b.constants.size()) {
         return a.kind == b.kind;
@@ -78,6 +83,10 @@ std::string sort_of(const Expr& type) {
 std::string kept(const std::string& field) { return "kept " + field; }
 
 void Linda::lower() {
+    ends_ = std::any_of(block_.properties.begin(), block_.properties.end(), is_ends);
+    if (ends_) {
+        names_.insert({"begin", "start", "running", "finish", "done"});
+    }
     for (const Property& p : block_.properties) {
         declare(p);
     }
@@ -113,6 +122,9 @@ void Linda::lower() {
                       "write " + std::string(kProcessForm) + " and start NAME(...)");
     }
     make_ended();
+    if (ends_) {
+        make_ways();
+    }
 }
 
 void Linda::error(const char* code, Span where, std::string message, std::string remedy) {
@@ -132,13 +144,13 @@ void Linda::warn(const char* code, Span where, std::string message, std::string 
 
 void Linda::declare(const Property& p) {
     const std::string& word = p.name.steps[0].text;
-    if (p.name.steps.size() == 1 && (word == "out" || word == "start")) {
+    if (is_ends(p) || (p.name.steps.size() == 1 && (word == "out" || word == "start"))) {
         return;
     }
     if (p.name.steps.size() != 1 || (word != "tuple" && word != "process")) {
         error("syntax", p.name.span, "this is no part of a tuple space",
               "write " + std::string(kTupleForm) + ", " + std::string(kProcessForm) +
-                  ", start PROCESS(...), or out TUPLE(...)");
+                  ", start PROCESS(...), out TUPLE(...), or ends");
         return;
     }
     const bool tuple = word == "tuple";
@@ -410,7 +422,9 @@ void Linda::make_tuples() {
             place.discipline = tuple.discipline;
             place.discipline_key = tuple.key;
         }
-        place.tokens = std::move(tuple.tokens);
+        if (!ends_) {
+            place.tokens = tuple.tokens;
+        }
         body_.places.push_back(std::move(place));
     }
 }
@@ -495,6 +509,48 @@ void Linda::make_ended() {
     if (state.formula) {
         state.formula = make_unary(lang::Op::kNot, std::move(state.formula));
         body_.states.push_back(std::move(state));
+    }
+}
+
+void Linda::make_ways() {
+    const Span where = block_.name.span;
+    for (const char* name : {"begin", "running", "done"}) {
+        lang::Place place = make_place(make_name(name, where));
+        place.is_public = true;
+        if (place.name.text == "begin") {
+            place.role = lang::Role::kStart;
+            give_token(place);
+        } else if (place.name.text == "done") {
+            place.role = lang::Role::kFinish;
+        }
+        body_.places.push_back(std::move(place));
+    }
+    lang::Transition start = make_transition(make_name("start", where), {make_path("begin", where)},
+                                             {make_path("running", where)});
+    lang::Transition finish = make_transition(
+        make_name("finish", where), {make_path("running", where)}, {make_path("done", where)});
+    const auto put = [&](const std::string& place, const std::vector<lang::InitialTokens>& list) {
+        for (const lang::InitialTokens& tokens : list) {
+            lang::Arc arc =
+                make_arc(lang::ArcKind::kGive, make_path(place, tokens.span), tokens.count);
+            arc.pattern = tokens.attributes;
+            start.outputs.push_back(std::move(arc));
+        }
+    };
+    for (const LindaKind& tuple : tuples_) {
+        put(tuple.name, tuple.tokens);
+        finish.inputs.push_back(make_arc(lang::ArcKind::kTakeAllNow, make_path(tuple.name, where)));
+    }
+    for (const LindaInstance& instance : made_.instances) {
+        put(instance.name + "_begin", instance.tokens);
+    }
+    for (const std::string& place : made_.places) {
+        finish.tests.push_back(make_arc(lang::ArcKind::kUnless, make_path(place, where)));
+    }
+    for (lang::Transition* t : {&start, &finish}) {
+        t->is_public = true;
+        t->span = where;
+        body_.transitions.push_back(std::move(*t));
     }
 }
 

@@ -86,6 +86,8 @@ class Linda {
     void check_patterns();
     void check_births();
     void make_ended();
+    // Of a space that ends: the ways in and out where a place runs it.
+    void make_ways();
     std::optional<std::size_t> find(const std::vector<LindaKind>& list, const lang::Expr& e,
                                     const char* what);
     // The arguments in the order of the fields; empty where a defect was told.
@@ -109,6 +111,7 @@ class Linda {
     lang::Body& body_;
     std::vector<LindaKind> tuples_, programs_;
     std::set<std::string> names_ = {"ended"};
+    bool ends_ = false;  // with its last process
     std::set<std::pair<std::uint32_t, std::string>> told_;
     // What the programs come to.
     struct Made {

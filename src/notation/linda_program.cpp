@@ -91,7 +91,9 @@ void LindaProgram::write() {
     if (!variables_.empty()) {
         first.discipline = lang::Discipline::kAny;
     }
-    first.tokens = instance.tokens;
+    if (!space_.ends_) {
+        first.tokens = instance.tokens;
+    }
     space_.body_.places.push_back(std::move(first));
     space_.made_.places.push_back(begin);
     open_.push_back({leave(name_ + "_begins", begin, where), {}});

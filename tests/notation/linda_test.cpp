@@ -132,6 +132,39 @@ TEST_CASE("who is taken where several tuples fit is what the kind of tuple says 
     }
 }
 
+TEST_CASE(
+    "a space that ends does the work of a place, again and again, and leaves nothing [unit]") {
+    const std::vector<std::string> log = log_of(R"(place p runs space(2) tokens 1
+place q takes 1 s
+go: p -> q
+back: q -> p
+linda space(n: int) {
+  tuple task(k: 1 .. 3)
+  tuple left_over
+  out n task(1)
+  out task(3)
+  start worker(1)
+  ends
+  process worker(mine: 1 .. 3) {
+    repeat 2 {
+      in task(1)
+      wait 1 s
+    }
+    out left_over
+    eval helper
+  }
+  process helper {
+    wait 2 s
+  }
+}
+)",
+                                                12);
+    std::vector<std::string> outside;
+    std::copy_if(log.begin(), log.end(), std::back_inserter(outside),
+                 [](const std::string& line) { return line.find("p.") == line.npos; });
+    CHECK(outside == std::vector<std::string>{"4 s go", "5 s back", "9 s go", "10 s back"});
+}
+
 TEST_CASE("figures are known before the run: each choice has a program of its own [unit]") {
     const scene::Scene scene = from_text(R"(until 20 s
 cast {
