@@ -7,25 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/formula_system.h"
+
 namespace {
 
 using namespace puppetri;
-
-template <class F>
-struct System final : OdeSystem {
-    System(std::uint32_t count, F function) : n(count), f(function) {}
-    std::uint32_t size() const override { return n; }
-    bool rates(double t, std::span<const double> x, std::span<double> out) override {
-        ++calls;
-        f(t, x, out);
-        return true;
-    }
-    std::uint32_t n;
-    F f;
-    int calls = 0;
-};
-template <class F>
-System(std::uint32_t, F) -> System<F>;
 
 struct Run {
     std::vector<double> x;
@@ -35,8 +21,8 @@ struct Run {
 };
 
 template <class F>
-Run integrate(System<F>& system, std::vector<double> x, double until, const OdeOptions& options,
-              double (*truth)(double) = nullptr) {
+Run integrate(FormulaSystem<F>& system, std::vector<double> x, double until,
+              const OdeOptions& options, double (*truth)(double) = nullptr) {
     OdeSolver solver(options);
     Run out;
     REQUIRE(solver.start(system, 0, x));
@@ -57,13 +43,13 @@ constexpr OdeMethod kBoth[] = {OdeMethod::kDormandPrince, OdeMethod::kRodas};
 
 TEST_CASE("a decay and an oscillator are their closed forms, also between the steps [oracle]") {
     for (const OdeMethod method : kBoth) {
-        System decay(1, [](double, auto x, auto out) { out[0] = -x[0]; });
+        FormulaSystem decay(1, [](double, auto x, auto out) { out[0] = -x[0]; });
         Run r = integrate(decay, {1}, 5, {.method = method, .relative = 1e-9},
                           [](double t) { return std::exp(-t); });
         CHECK(r.worst < 1e-7);
         CHECK(std::fabs(r.x[0] - std::exp(-5.0)) < 1e-8);
 
-        System spring(2, [](double, auto x, auto out) {
+        FormulaSystem spring(2, [](double, auto x, auto out) {
             out[0] = x[1];
             out[1] = -x[0];
         });
@@ -78,7 +64,7 @@ TEST_CASE("a decay and an oscillator are their closed forms, also between the st
 TEST_CASE("halving the step divides the error by two to the order [law]") {
     for (const OdeMethod method : kBoth) {
         const auto error = [&](int steps) {
-            System forced(
+            FormulaSystem forced(
                 1, [](double t, auto x, auto out) { out[0] = -2 * x[0] * t + std::cos(3 * t); });
             // Tolerances that accept every step, and steps of one length.
             OdeSolver solver(
@@ -109,7 +95,7 @@ TEST_CASE("halving the step divides the error by two to the order [law]") {
 }
 
 TEST_CASE("the predator and the prey keep their invariant [oracle]") {
-    System wolves(2, [](double, auto x, auto out) {
+    FormulaSystem wolves(2, [](double, auto x, auto out) {
         out[0] = x[0] * (1.1 - 0.4 * x[1]);
         out[1] = x[1] * (0.1 * x[0] - 0.4);
     });
@@ -123,7 +109,7 @@ TEST_CASE("the predator and the prey keep their invariant [oracle]") {
 // Hairer, Wanner, "Solving Ordinary Differential Equations II", IV.10: Robertson's reaction.
 // Reference values of the test set for initial value problem solvers, t = 1e11.
 TEST_CASE("the stiff method solves Robertson's reaction in few steps [oracle]") {
-    System reaction(3, [](double, auto y, auto out) {
+    FormulaSystem reaction(3, [](double, auto y, auto out) {
         out[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
         out[2] = 3e7 * y[1] * y[1];
         out[1] = -out[0] - out[2];
@@ -147,7 +133,7 @@ TEST_CASE("the stiff method solves Robertson's reaction in few steps [oracle]") 
 
 TEST_CASE("the stiff oscillator of van der Pol ends at its published values [oracle]") {
     // eps = 1e-6, t = 2: y = 0.1706167732170483e1, z = -0.8928097010247975.
-    System oscillator(2, [](double, auto y, auto out) {
+    FormulaSystem oscillator(2, [](double, auto y, auto out) {
         out[0] = y[1];
         out[1] = ((1 - y[0] * y[0]) * y[1] - y[0]) / 1e-6;
     });
@@ -161,7 +147,7 @@ TEST_CASE("the stiff oscillator of van der Pol ends at its published values [ora
 
 TEST_CASE("a solution that leaves for infinity is told at its pole [hostile]") {
     for (const OdeMethod method : kBoth) {
-        System pole(1, [](double, auto x, auto out) { out[0] = x[0] * x[0]; });
+        FormulaSystem pole(1, [](double, auto x, auto out) { out[0] = x[0] * x[0]; });
         const double one = 1;
         OdeSolver solver({.method = method});
         REQUIRE(solver.start(pole, 0, {&one, 1}));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "files.h"
+#include "math/formula_system.h"
 #include "puppetri/run/course_book.h"
 #include "puppetri/scene/perform.h"
 #include "run/equate.h"
@@ -23,22 +24,6 @@ bool skipped() {
     return false;
 }
 
-template <class F>
-struct System final : OdeSystem {
-    System(std::uint32_t count, F function) : n(count), f(function) {}
-    std::uint32_t size() const override { return n; }
-    bool rates(double t, std::span<const double> x, std::span<double> out) override {
-        ++calls;
-        f(t, x, out);
-        return true;
-    }
-    std::uint32_t n;
-    F f;
-    int calls = 0;
-};
-template <class F>
-System(std::uint32_t, F) -> System<F>;
-
 struct Went {
     std::vector<double> x;
     int steps = 0;
@@ -48,8 +33,8 @@ struct Went {
 };
 
 template <class F>
-Went integrate(System<F>& system, const std::vector<double>& x, double until, OdeOptions options,
-               double (*truth)(double) = nullptr, double* worst = nullptr) {
+Went integrate(FormulaSystem<F>& system, const std::vector<double>& x, double until,
+               OdeOptions options, double (*truth)(double) = nullptr, double* worst = nullptr) {
     run::EquationSystem equations;
     equations.variables.resize(system.n);
     equations.options = options;
@@ -79,7 +64,7 @@ TEST_CASE("CVODE's courses are closed forms, between the steps too, and have no 
     if (skipped()) {
         return;
     }
-    System decay(1, [](double, auto x, auto out) { out[0] = -x[0]; });
+    FormulaSystem decay(1, [](double, auto x, auto out) { out[0] = -x[0]; });
     double worst = 0;
     Went w = integrate(
         decay, {1}, 5, {.relative = 1e-9, .absolute = 1e-12}, [](double t) { return std::exp(-t); },
@@ -87,7 +72,7 @@ TEST_CASE("CVODE's courses are closed forms, between the steps too, and have no 
     CHECK(worst < 1e-7);
     CHECK(w.gap == 0);
     CHECK(w.end_s == 5);
-    System spring(2, [](double, auto x, auto out) {
+    FormulaSystem spring(2, [](double, auto x, auto out) {
         out[0] = x[1];
         out[1] = -x[0];
     });
@@ -104,7 +89,7 @@ TEST_CASE("Robertson's reaction and van der Pol's oscillator end at published va
     if (skipped()) {
         return;
     }
-    System reaction(3, [](double, auto y, auto out) {
+    FormulaSystem reaction(3, [](double, auto y, auto out) {
         out[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
         out[2] = 3e7 * y[1] * y[1];
         out[1] = -out[0] - out[2];
@@ -116,7 +101,7 @@ TEST_CASE("Robertson's reaction and van der Pol's oscillator end at published va
     CHECK(late.x[1] == doctest::Approx(0.8333360770334713e-13).epsilon(1e-4));
     CHECK(late.x[2] == doctest::Approx(0.9999999791665050).epsilon(1e-9));
     CHECK(late.steps < 5000);
-    System oscillator(2, [](double, auto y, auto out) {
+    FormulaSystem oscillator(2, [](double, auto y, auto out) {
         out[0] = y[1];
         out[1] = ((1 - y[0] * y[0]) * y[1] - y[0]) / 1e-6;
     });
@@ -130,7 +115,7 @@ TEST_CASE("a solution that leaves for infinity is told at its pole by CVODE [hos
     if (skipped()) {
         return;
     }
-    System pole(1, [](double, auto x, auto out) { out[0] = x[0] * x[0]; });
+    FormulaSystem pole(1, [](double, auto x, auto out) { out[0] = x[0] * x[0]; });
     const Went w = integrate(pole, {1}, 5, {});
     CHECK_FALSE(w.good);
     CHECK(w.end_s == doctest::Approx(1).epsilon(1e-6));
