@@ -34,16 +34,16 @@ using lang::Op;
 using lang::Span;
 
 constexpr std::string_view kEventForm =
-    "event NAME(PARAMETER: TYPE) \"caption\" priority NUMBER raises EVENT starts { DATUM := VALUE "
-    "}";
+    "event NAME(PARAMETER: TYPE) \"caption\" priority NUMBER raises EVENT starts ends { DATUM := "
+    "VALUE }";
 constexpr std::string_view kEdgeForm =
     "FROM -> TO(PARAMETER: VALUE) after TIME when CONDITION does MOVEMENT, or FROM -> TO cancels "
     "when CONDITION";
 
 // Events of the instant fire between 1 and kMostPriority; what an event has begun comes first: it
-// cancels, and then it schedules, edge after edge.
+// cancels, and then it schedules, edge after edge, and at last the graph ends with it.
 constexpr int kMostPriority = 1000, kMostEdges = 10000;
-constexpr int kSchedules = kMostPriority + kMostEdges, kDraws = kSchedules + 1,
+constexpr int kEnds = kMostPriority + 1, kSchedules = kEnds + kMostEdges, kDraws = kSchedules + 1,
               kWishes = kDraws + kMostEdges, kCancels = kWishes + 1;
 
 struct EventNode {
@@ -52,7 +52,7 @@ struct EventNode {
     Span span;
     std::vector<lang::Parameter> parameters;
     Expr priority;
-    bool starts = false;
+    bool starts = false, ends = false;
     std::vector<lang::Path> raises;
     std::vector<lang::Binding> sets;
     const std::string& text() const { return name.text; }
@@ -148,6 +148,9 @@ class EventGraph {
             }
             if (line.word("starts")) {
                 made.starts = true;
+            } else if (line.word("ends")) {
+                made.ends = true;
+                ends_ = true;
             } else if (line.word("raises")) {
                 if (const lang::Path* e = line.path("the name of an event")) {
                     made.raises.push_back(*e);
@@ -462,7 +465,7 @@ class EventGraph {
             if (const Edge* only = only_edge(i); only != nullptr && only->does) {
                 list.does = only->does;
             }
-            if (e.starts) {
+            if (e.starts && !ends_) {
                 give_token(list);
             }
             lang::Transition& t = transition(e.text(), e.span, e.priority);
@@ -475,6 +478,42 @@ class EventGraph {
         for (const Edge& e : edges_) {
             e.cancels ? cancel(e) : schedule(e);
         }
+        if (ends_) {
+            ways();
+        }
+    }
+
+    // The way in schedules what starts; the way out calls off all that is scheduled.
+    void ways() {
+        const Span span = block_.name.span;
+        std::vector<std::string> all;
+        for (const lang::Place& p : body_.places) {
+            all.push_back(p.name.text);
+        }
+        lang::Place& begin = place("graph_begin", span, {}, "");
+        begin.role = lang::Role::kStart;
+        give_token(begin);
+        place("graph_ending", span, {}, "");
+        place("graph_done", span, {}, "").role = lang::Role::kFinish;
+        for (std::size_t i = 0; i < events_.size(); ++i) {
+            if (events_[i].ends) {
+                of_event(i).outputs.push_back(arc(ArcKind::kGive, "graph_ending", events_[i].span));
+            }
+        }
+        lang::Transition& starts =
+            transition("graph_starts", span, make_number(Rational{kDraws}, span));
+        starts.inputs = {arc(ArcKind::kTake, "graph_begin", span)};
+        for (const EventNode& e : events_) {
+            if (e.starts) {
+                starts.outputs.push_back(arc(ArcKind::kGive, e.list(), e.span));
+            }
+        }
+        lang::Transition& ends = transition("graph_ends", span, make_number(Rational{kEnds}, span));
+        ends.inputs = {arc(ArcKind::kTake, "graph_ending", span)};
+        for (const std::string& p : all) {
+            ends.inputs.push_back(arc(ArcKind::kTakeAllNow, p, span));
+        }
+        ends.outputs = {arc(ArcKind::kGive, "graph_done", span)};
     }
 
     bool cancels_any(std::size_t event) const {
@@ -602,6 +641,7 @@ class EventGraph {
     std::vector<Edge> edges_;
     std::map<std::string, std::size_t> numbers_;
     std::map<std::string, int> names_;
+    bool ends_ = false;  // some event ends it
 };
 
 }  // namespace

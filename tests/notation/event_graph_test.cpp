@@ -232,6 +232,37 @@ event_graph graph {
     CHECK(list[0].where.line == 13);
 }
 
+TEST_CASE("a graph that ends does the work of a place, and calls off what is scheduled [unit]") {
+    std::vector<std::string> log = log_of(R"(place p runs graph() tokens 1
+place q takes 1 s
+go: p -> q
+back: q -> p
+event_graph graph {
+  data n: 0 .. 9 = 0
+  event a starts { n := 0 }
+  event tick(k: 0 .. 9) { n := n + 1 }
+  event late
+  event over ends
+  a -> tick(k: 1) after 1 s
+  a -> late after 20 s
+  a -> over after 3 s
+  tick -> tick(k: k) after 1 s
+  tick -> late after 2 .. 3 s
+  over -> late
+}
+)",
+                                          7);
+    std::erase_if(log, [](const std::string& line) {
+        return line.find("_to_") != line.npos || line.find("p.graph") != line.npos;
+    });
+    // Two ticks before it ends, perhaps one in the very instant, and never the late ones.
+    std::erase_if(
+        log, [](const std::string& line) { return line == "3 s p.tick" || line == "7 s p.tick"; });
+    CHECK(log == std::vector<std::string>{"0 s p.a", "1 s p.tick", "2 s p.tick", "3 s p.over",
+                                          "3 s go", "4 s back", "4 s p.a", "5 s p.tick",
+                                          "6 s p.tick", "7 s p.over", "7 s go"});
+}
+
 TEST_CASE("defects of an event graph are told where they stand [unit]") {
     const Diagnostics list = defects_of(R"(use g
 event_graph g {
