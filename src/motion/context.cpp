@@ -23,13 +23,14 @@ ControlsRate rate_between(const Controls& a, const Controls& b, double dt_s) {
         const LegControl &p = a.legs[i], &q = b.legs[i];
         r.legs[i] = {linear(p.ankle_world, q.ankle_world),
                      angular_velocity(p.foot_rotation_world, q.foot_rotation_world, dt_s),
-                     (q.toe_bend_rad - p.toe_bend_rad) * f, (q.swivel_rad - p.swivel_rad) * f};
+                     (q.toe_bend_rad - p.toe_bend_rad) * f,
+                     turn_between(p.swivel_rad, q.swivel_rad) * f};
         const ArmControl &u = a.arms[i], &v = b.arms[i];
         r.arms[i] = {linear(u.chest_from_hand.translation, v.chest_from_hand.translation),
                      angular_velocity(u.chest_from_hand.rotation, v.chest_from_hand.rotation, dt_s),
                      linear(u.world_from_hand.translation, v.world_from_hand.translation),
                      angular_velocity(u.world_from_hand.rotation, v.world_from_hand.rotation, dt_s),
-                     (v.swivel_rad - u.swivel_rad) * f,
+                     turn_between(u.swivel_rad, v.swivel_rad) * f,
                      (v.relaxed - u.relaxed) * f,
                      (v.spread - u.spread) * f,
                      (v.grip - u.grip) * f,

@@ -137,7 +137,15 @@ class Idle final : public Movement {
         pelvis_ = {context.now.pelvis.position_world - own.pelvis.position_world,
                    context.rate.pelvis_velocity_world - velocity, stops_s};
         reach_ = KeepReach(figure_, {feet_[0].stands_at(0), feet_[1].stands_at(0)}, context.now);
-        join_ = InertialFigure(context, own, later, kSettle_s);
+        MotionContext found = context;
+        const ControlsRate rate = rate_between(own, later, InertialFigure::kMoment_s);
+        for (const Side side : {Side::kLeft, Side::kRight}) {
+            if (spec.at_home.has(arm_of(side))) {
+                found.now.arms[index_of(side)] = own.arms[index_of(side)];
+                found.rate.arms[index_of(side)] = rate.arms[index_of(side)];
+            }
+        }
+        join_ = InertialFigure(found, own, later, kSettle_s);
     }
 
     void sample(double t_s, Controls& out) const override {

@@ -88,7 +88,8 @@ InertialArm::InertialArm(const figure::Figure& figure, Side side, const ArmContr
                          const ControlsRate::Arm& own_rate, double blend_s)
     : shoulder_chest_(shoulder_chest(figure, side)),
       outward_{side == Side::kLeft ? 1.0 : -1.0, 0, 0},
-      swivel_(now.swivel_rad - own.swivel_rad, rate.swivel_rad_s - own_rate.swivel_rad_s, blend_s),
+      swivel_(turn_between(own.swivel_rad, now.swivel_rad),
+              rate.swivel_rad_s - own_rate.swivel_rad_s, blend_s),
       relaxed_(now.relaxed - own.relaxed, rate.relaxed_per_s - own_rate.relaxed_per_s, blend_s),
       spread_(now.spread - own.spread, rate.spread_per_s - own_rate.spread_per_s, blend_s),
       grip_(now.grip - own.grip, rate.grip_per_s - own_rate.grip_per_s, blend_s),
@@ -165,8 +166,8 @@ InertialLeg::InertialLeg(const LegControl& now, const ControlsRate::Leg& rate,
                         own_rate.foot_angular_world, blend_s)),
       toes_(now.toe_bend_rad - own.toe_bend_rad, rate.toe_bend_rad_s - own_rate.toe_bend_rad_s,
             blend_s),
-      swivel_(now.swivel_rad - own.swivel_rad, rate.swivel_rad_s - own_rate.swivel_rad_s, blend_s) {
-}
+      swivel_(turn_between(own.swivel_rad, now.swivel_rad),
+              rate.swivel_rad_s - own_rate.swivel_rad_s, blend_s) {}
 
 void InertialLeg::apply(double t_s, LegControl& leg) const {
     leg.ankle_world = leg.ankle_world + ankle_.at(t_s);
@@ -213,7 +214,7 @@ InertialFigure::InertialFigure(const MotionContext& context, const Controls& own
     for (int i = 0; i < 2; ++i) {
         arms_[i] = InertialArm(context.figure, static_cast<Side>(i), now.arms[i],
                                context.rate.arms[i], own.arms[i], rate.arms[i], blend_s);
-        swivel_[i] = {now.legs[i].swivel_rad - own.legs[i].swivel_rad,
+        swivel_[i] = {turn_between(own.legs[i].swivel_rad, now.legs[i].swivel_rad),
                       context.rate.legs[i].swivel_rad_s - rate.legs[i].swivel_rad_s, blend_s};
     }
 }

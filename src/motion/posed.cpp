@@ -80,8 +80,12 @@ class Posed final : public Movement {
         limbs = limbs_of(figure_, spec);
         duration = duration_of(context, spec.duration_s);
         rounds_ = Rounds(spec, duration);
-        base_ = make_idle(context,
-                          {.limbs = limbs, .duration_s = spec.duration_s, .gets_up = spec.gets_up});
+        // What the source leaves out of an arm's joints is as it hangs. On its way there the joint
+        // would take the others of its DOFs through any values.
+        base_ = make_idle(context, {.limbs = limbs,
+                                    .duration_s = spec.duration_s,
+                                    .gets_up = spec.gets_up,
+                                    .at_home = limbs_of(figure_, {.dofs = spec.dofs})});
         find_drives();
         const Transform pelvis{about_y(heading_of(start_.pelvis.rotation_world)),
                                start_.pelvis.position_world};

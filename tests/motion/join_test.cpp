@@ -9,6 +9,8 @@
 
 #include "puppetri/figure/mannequin.h"
 #include "puppetri/math/rotation.h"
+#include "puppetri/motion/idle.h"
+#include "puppetri/motion/inertialize.h"
 
 using namespace puppetri;
 using namespace puppetri::motion;
@@ -111,6 +113,34 @@ TEST_CASE(
     }
     CHECK(few > 20);
     CHECK(few < 200);
+}
+
+TEST_CASE("elbows and knees that differ across the half turn join the short way [unit]") {
+    const figure::Figure f = figure::make_mannequin(1.75);
+    ArmControl now = hanging_arm(f, Side::kLeft), own = now;
+    now.swivel_rad = 3.1;
+    own.swivel_rad = -3.1;
+    const double short_way = 2 * kPi - 6.2;
+    const InertialArm arm(f, Side::kLeft, now, {}, own, {}, 0.4);
+    LegControl now_leg, own_leg;
+    now_leg.swivel_rad = 3.1;
+    own_leg.swivel_rad = -3.1;
+    const InertialLeg leg(now_leg, {}, own_leg, {}, 0.4);
+    for (double t = 0; t < 0.5; t += 0.01) {
+        ArmControl a = own;
+        LegControl l = own_leg;
+        arm.apply(t, a);
+        leg.apply(t, l);
+        CHECK(std::fabs(a.swivel_rad - own.swivel_rad) <= short_way + 1e-9);
+        CHECK(std::fabs(l.swivel_rad - own_leg.swivel_rad) <= short_way + 1e-9);
+    }
+    // So are their rates.
+    Controls a, b;
+    a.arms[0].swivel_rad = a.legs[0].swivel_rad = 3.14;
+    b.arms[0].swivel_rad = b.legs[0].swivel_rad = -3.14;
+    const ControlsRate rate = rate_between(a, b, 0.1);
+    CHECK(rate.arms[0].swivel_rad_s == doctest::Approx((2 * kPi - 6.28) / 0.1));
+    CHECK(rate.legs[0].swivel_rad_s == doctest::Approx((2 * kPi - 6.28) / 0.1));
 }
 
 TEST_CASE("a join with nothing on one side is not measured [unit]") {

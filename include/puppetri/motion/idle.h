@@ -22,6 +22,8 @@ struct IdleSpec {
     double duration_s = 2;  // what `takes auto` gets
     double liveliness = 1;  // scales breath, weight shift and gaze; 0 is a statue
     bool gets_up = false;   // from a seat; otherwise who sits goes on sitting
+    // Arms that hang from the first instant on, wherever they were found: who asks joins them.
+    LimbSet at_home = {};
 };
 
 // Stands where the feet are (who sits stays seated there, hands on the thighs; a creature stays
