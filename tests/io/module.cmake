@@ -9,7 +9,8 @@ target_link_libraries(puppetri_test_readers PUBLIC Eigen3::Eigen PRIVATE TinyGLT
 target_compile_features(puppetri_test_readers PUBLIC cxx_std_20)
 target_link_libraries(test_io PRIVATE puppetri_test_readers)
 target_sources(test_io PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measure.cpp"
-    "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/example_motion.cpp")
+    "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/example_motion.cpp"
+    "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/motion_table.cpp")
 
 # Readers and writers of nets with what they need and nothing else: quick to build with sanitizers.
 file(GLOB net_format_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/base/*.cpp"
