@@ -7,11 +7,13 @@
 #include "commands.h"
 #include "convert_motion.h"
 #include "puppetri/base/text.h"
+#include "puppetri/figure/dof.h"
 #include "puppetri/figure/mannequin.h"
 #include "puppetri/io/character_reader.h"
 #include "puppetri/io/json_writer.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/clip_edit.h"
+#include "puppetri/motion/clip_layers.h"
 #include "puppetri/motion/walk_cycle.h"
 #include "terminal.h"
 
@@ -82,9 +84,7 @@ class Editor {
         }
         if (verb == "mirror") {
             words(0, 0);
-            return motion::mirrored(clip, file_.skeleton.joints.empty()
-                                              ? figure::make_mannequin(1.75).skeleton
-                                              : file_.skeleton);
+            return motion::mirrored(clip, skeleton());
         }
         if (verb == "reverse") {
             words(0, 0);
@@ -127,13 +127,140 @@ class Editor {
             out.loops = true;
             return out;
         }
-        static const std::vector<std::string> kVerbs = {"copy",    "cut",      "mirror", "reverse",
-                                                        "stretch", "warp",     "repeat", "close",
-                                                        "cycle",   "resample", "reduce", "loops"};
+        if (verb == "paste" || verb == "insert") {
+            words(2, 3);
+            const double at = number(0, 0, end, "it wants seconds within the clip, then a file");
+            const std::optional<motion::Clip> piece =
+                problem_.empty()
+                    ? piece_of(edit_.words[1], edit_.words.size() > 2 ? edit_.words[2] : "")
+                    : std::nullopt;
+            return !piece            ? clip
+                   : verb == "paste" ? motion::pasted(clip, at, *piece)
+                                     : motion::inserted(clip, at, *piece);
+        }
+        if (verb == "layer") {
+            return layered(clip);
+        }
+        if (verb == "key") {
+            return with_key(clip);
+        }
+        static const std::vector<std::string> kVerbs = {
+            "copy",    "cut",  "paste",  "insert", "layer", "key",      "mirror", "reverse",
+            "stretch", "warp", "repeat", "close",  "cycle", "resample", "reduce", "loops"};
         const std::string_view near = nearest_name(verb, kVerbs);
         problem_ = "there is no edit " + verb +
                    (near.empty() ? std::string() : "; did you mean " + std::string(near) + "?");
         return clip;
+    }
+
+    const figure::Skeleton& skeleton() const {
+        static const figure::Skeleton mannequin = figure::make_mannequin(1.75).skeleton;
+        return file_.skeleton.joints.empty() ? mannequin : file_.skeleton;
+    }
+
+    // The clip of a file, the first where no name is given.
+    std::optional<motion::Clip> piece_of(const std::string& path, const std::string& name) {
+        Checked<io::ClipFile> file = io::load_clips(path, {});
+        if (!file) {
+            problem_ = "\"" + edit_.text + "\": " + file.error()[0].message + "; " +
+                       file.error()[0].remedy;
+            return std::nullopt;
+        }
+        for (motion::Clip& clip : file->clips) {
+            if (name.empty() || clip.name == name) {
+                return std::move(clip);
+            }
+        }
+        problem_ = "\"" + edit_.text + "\": " + path + " has no clip " + name;
+        return std::nullopt;
+    }
+
+    // layer FILE [clip NAME] [additive] [weight W] [begins T] [only JOINT]
+    motion::Clip layered(const motion::Clip& clip) {
+        motion::ClipLayer over;
+        std::string name;
+        if (edit_.words.empty()) {
+            problem_ = "\"" + edit_.text + "\": layer wants a file";
+        }
+        for (std::size_t i = 1; i < edit_.words.size() && problem_.empty(); ++i) {
+            const std::string& word = edit_.words[i];
+            const bool more = i + 1 < edit_.words.size();
+            if (word == "additive") {
+                over.mode = motion::LayerMode::kAdditive;
+            } else if (word == "weight") {
+                over.weight = number(++i, 0, 1, "a weight is from 0 to 1");
+            } else if (word == "begins") {
+                over.begin_s = number(++i, 0, clip.duration_s, "it begins within the clip");
+            } else if (word == "clip" && more) {
+                name = edit_.words[++i];
+            } else if (word == "only" && more && skeleton().find(edit_.words[i + 1]).valid()) {
+                over.mask = motion::mask_below(skeleton(), edit_.words[++i]);
+            } else {
+                problem_ = "\"" + edit_.text +
+                           "\": behind the file come clip NAME, additive, "
+                           "weight W, begins T, only JOINT (one of the file)";
+            }
+        }
+        if (!problem_.empty()) {
+            return clip;
+        }
+        std::optional<motion::Clip> piece = piece_of(edit_.words[0], name);
+        if (!piece) {
+            return clip;
+        }
+        if (over.mode == motion::LayerMode::kAdditive) {
+            piece = motion::to_additive(*piece, 0);
+        }
+        over.clip = &*piece;
+        constexpr double kRate_hz = 60;
+        static const figure::DofSet dofs = figure::humanoid_dofs(figure::make_mannequin(1.75));
+        const motion::ClipLayer layers[] = {{.clip = &clip}, over};
+        return motion::flattened(layers, skeleton(), clip.duration_s, kRate_hz,
+                                 file_.skeleton.joints.empty() ? &dofs : nullptr);
+    }
+
+    // key T DOF VALUE deg|m [INTERPOLATION]
+    motion::Clip with_key(const motion::Clip& clip) {
+        words(4, 5);
+        motion::NumberKey key;
+        key.t_s = number(0, 0, 86'400, "seconds come first");
+        const double value = number(2, -1e6, 1e6, "behind the degree of freedom comes a number");
+        const std::string unit = edit_.words.size() > 3 ? edit_.words[3] : "";
+        if (problem_.empty() && unit != "deg" && unit != "m") {
+            problem_ = "\"" + edit_.text + "\": the number is in deg or m";
+        }
+        key.value = unit == "deg" ? radians(value) : value;
+        if (problem_.empty() && edit_.words.size() > 4) {
+            bool known = false;
+            for (int i = 0; i <= static_cast<int>(motion::Interpolation::kBezier); ++i) {
+                const auto way = static_cast<motion::Interpolation>(i);
+                if (motion::name_of(way) == edit_.words[4]) {
+                    key.interpolation = way;
+                    known = true;
+                }
+            }
+            if (!known) {
+                problem_ = "\"" + edit_.text + "\": there is no interpolation " + edit_.words[4];
+            }
+        }
+        if (!problem_.empty()) {
+            return clip;
+        }
+        motion::Clip out = clip;
+        auto track = std::find_if(out.numbers.begin(), out.numbers.end(),
+                                  [&](const auto& t) { return t.target == edit_.words[1]; });
+        if (track == out.numbers.end()) {
+            track = out.numbers.insert(track, {edit_.words[1], {}});
+        }
+        auto at = std::find_if(track->keys.begin(), track->keys.end(),
+                               [&](const auto& k) { return k.t_s >= key.t_s; });
+        if (at != track->keys.end() && at->t_s == key.t_s) {
+            *at = key;
+        } else {
+            track->keys.insert(at, key);
+        }
+        out.duration_s = std::fmax(out.duration_s, key.t_s);
+        return out;
     }
 
     motion::Clip warp(const motion::Clip& clip) {
@@ -288,7 +415,13 @@ int run(const Arguments& arguments) {
         say_error("edits need a file to write: -o FILE");
         return kBadInput;
     }
-    Checked<io::ClipFile> file = io::load_clips(arguments.text("in"), *reading);
+    const bool empty = arguments.text("in") == "-";
+    const std::vector<std::string> names = arguments.texts("--clip");
+    io::ClipFile made;
+    made.format = io::ClipFormat::kKeys;
+    made.clips.emplace_back().name = names.empty() ? "clip" : names[0];
+    Checked<io::ClipFile> file = empty ? Checked<io::ClipFile>(std::move(made))
+                                       : io::load_clips(arguments.text("in"), *reading);
     if (!file) {
         say_diagnostics(file.error());
         return kBadInput;
@@ -322,9 +455,17 @@ Command clip_command() {
         "clip",
         "show and edit the clips of a file of motion",
         "Without -o it tells what is in the file. Edits are done one after the other, on all clips "
-        "or those of --clip:\n"
+        "or those of --clip; where IN is - they begin with an empty clip:\n"
         "  \"copy FROM TO\"      keeps this stretch (seconds)\n"
         "  \"cut FROM TO\"       takes it out; what follows moves up\n"
+        "  \"paste AT FILE\"     writes the first clip of FILE (or \"paste AT FILE NAME\") over it "
+        "from AT on\n"
+        "  \"insert AT FILE\"    the same, what was behind AT moves back\n"
+        "  \"layer FILE ..\"     lays a clip of FILE over it; may be followed by clip NAME, "
+        "additive,\n"
+        "                      weight W, begins T, only JOINT (with all below)\n"
+        "  \"key T DOF N deg\"   sets a key of a degree of freedom, in deg or m; a word for the\n"
+        "                      interpolation may follow: step, linear, catmull-rom, ..\n"
         "  mirror              left becomes right\n"
         "  reverse             backwards\n"
         "  \"stretch FACTOR\"    2 is half as fast\n"
@@ -342,9 +483,11 @@ Command clip_command() {
         "  puppetri clip take.bvh --scale 0.056444\n"
         "  puppetri clip take.bvh cycle -o walk.keys\n"
         "  puppetri clip fox.glb --clip Run \"repeat 4\" -o run.glb\n"
-        "  puppetri clip wave.keys \"copy 0.5 1.5\" mirror -o other.keys",
-        {{"in", Value::kText, "IN", "a file of motion: .keys, .bvh, .glb, .gltf, .vrm, .vrma",
-          true},
+        "  puppetri clip wave.keys \"copy 0.5 1.5\" mirror -o other.keys\n"
+        "  puppetri clip walk.keys \"layer nod.keys additive only neck\" -o nodding.keys\n"
+        "  puppetri clip - \"key 0 head.flex 0 deg\" \"key 0.5 head.flex 20 deg\" -o nod.keys",
+        {{"in", Value::kText, "IN",
+          "a file of motion: .keys, .bvh, .glb, .gltf, .vrm, .vrma; - for none", true},
          {"edits", Value::kTexts, "EDIT", "what to do, in this order", false},
          {"-o,--output", Value::kText, "FILE", "the file to write: .keys, .bvh, .glb or .gltf",
           false}},

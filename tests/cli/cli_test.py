@@ -497,6 +497,38 @@ class Motion(Cli):
         self.assertAlmostEqual(told["clips"][0]["duration_s"], 2, places=2)
         self.assertEqual(run("clip", self.CORPUS / "wave.vrma").returncode, 0)
 
+    def test_clips_are_made_pasted_inserted_and_layered(self):
+        nod, out = self.path / "nod.keys", self.path / "out.keys"
+        done = run("clip", "-", "--clip", "nod", "key 0 head.flex 0 deg catmull-rom", "key 0.5 head.flex 20 deg",
+                   "key 1 head.flex 0 deg", "key 0.5 head.flex 30 deg", "-o", nod)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(nod.read_text(), "keys 1\n\nclip nod lasts 1\nnumber head.flex catmull-rom\n  0 0\n"
+                                          "  0.5 0.5235987755982988 linear\n  1 0 linear\n")
+
+        def made(*edits):
+            done = run("clip", self.CORPUS / "walk.keys", "--clip", "walk", *edits, "-o", out)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return json.loads(run("clip", out, "--json").stdout)["clips"][0]
+
+        # The walk lasts 1 s and has three tracks.
+        pasted = made(f"paste 0.2 {nod}")
+        self.assertAlmostEqual(pasted["duration_s"], 1.2)
+        self.assertEqual(pasted["tracks"], 4)
+        self.assertAlmostEqual(made(f"insert 0.5 {nod} nod")["duration_s"], 2)
+        # What it differs from its own beginning, on top of itself: twice the way.
+        walk = self.CORPUS / "walk.keys"
+        for weight, travel in ((1, 2), (0.5, 1.5), (0, 1)):
+            layered = made(f"layer {walk} clip walk additive weight {weight}")
+            self.assertAlmostEqual(layered["travel_m"], travel, places=4)
+        for edit in (f"paste 5 {nod}", f"paste 0 {self.path / 'nobody.keys'}", f"insert 0 {nod} shake", "paste 0",
+                     f"layer {nod} loud", f"layer {nod} only nobody", "layer", "key 0 head.flex 20",
+                     "key 0 head.flex 20 deg wobbly", "key soon head.flex 20 deg"):
+            other = self.path / "other.keys"
+            done = run("clip", walk, edit, "-o", other)
+            self.assertEqual(done.returncode, 2, edit)
+            self.assertTrue(done.stderr)
+            self.assertFalse(other.exists())
+
     def test_tuples_become_absolute_keyframes(self):
         tuples, poses, out = self.path / "dp.tuples", self.path / "poses.keys", self.path / "dp.keys"
         tuples.write_text("0 man1 RESTING\n24 man1 EATING1\n")
