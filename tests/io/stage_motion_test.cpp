@@ -121,7 +121,7 @@ TEST_CASE(
     const Measures m = test::measured_on_stage(e, 0, 0, e.end_s());
     const std::vector<Stretch> stretches = test::stretches_of(e, 0, e.end_s());
     INFO(test::report(m));
-    check_always(m);
+    check_always(e, 0, m);
     CHECK(check_swings(m, stretches) == 4);
     CHECK(m.knee_stance_deg.value <= 40);  // over the front foot, the other one on its toes
 }

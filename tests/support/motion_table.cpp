@@ -24,8 +24,6 @@ constexpr Allowed kAllowed[] = {
     {"18_chart/guard.pup", "rui", "knee rad/s2", 1200},
     {"18_chart/guard.pup", "rui", "hip rad/s2", 600},
     {"18_chart/guard.pup", "rui", "ankle rad/s2", 600},
-    // Half steps that nobody goes on with: it halts in full stride.
-    {"10_two_legs/sampled.pup", "ana", "pelvis m/s2", 24},
     // Exponential times: some bows get a tenth of the time that they need.
     {"13_moods/workshop.pup", "", "pelvis m/s2", 130},
     {"13_moods/workshop.pup", "", "hip rad/s", 16},
