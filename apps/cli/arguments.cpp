@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The command line, parsed by CLI11: the only file that knows it.
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <list>
+#include <optional>
 
 #include "command.h"
 #include "terminal.h"
@@ -14,6 +16,15 @@ namespace {
 std::string key_of(const Option& option) {
     const std::size_t comma = option.name.rfind(',');
     return comma == std::string::npos ? option.name : option.name.substr(comma + 1);
+}
+
+// None where it is no number, or does not fit: what is too large must not become another one.
+std::optional<std::int64_t> whole_number(const std::string& text) {
+    std::int64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, problem] = std::from_chars(text.data(), end, value);
+    return problem == std::errc{} && at == end && !text.empty() ? std::optional(value)
+                                                                : std::nullopt;
 }
 
 struct Bound {
@@ -49,7 +60,10 @@ void bind(CLI::App& app, BoundCommand& out) {
             b.cli->allow_extra_args(option.name.front() != '-');  // several by position
         }
         if (option.value == Value::kInteger) {
-            b.cli->check(CLI::TypeValidator<std::int64_t>());
+            b.cli->check([](const std::string& text) {
+                return whole_number(text) ? std::string()
+                                          : text + " is no whole number from -2^63 to 2^63 - 1";
+            });
         }
     }
 }
@@ -76,9 +90,7 @@ std::int64_t Arguments::integer(const std::string& name, std::int64_t otherwise)
     if (at == values_.end() || at->second.empty()) {
         return otherwise;
     }
-    std::int64_t value = otherwise;
-    CLI::detail::lexical_cast(at->second.back(), value);
-    return value;
+    return whole_number(at->second.back()).value_or(otherwise);
 }
 
 std::vector<std::string> Arguments::texts(const std::string& name) const {

@@ -23,8 +23,10 @@ namespace puppetri::sim {
 
 Replication replication(std::uint64_t seed, std::uint64_t number, bool antithetic_pairs) {
     const std::uint64_t luck = antithetic_pairs ? number / 2 : number;
+    // One that can be written wherever a seed can
+    constexpr std::uint64_t kSigned = ~std::uint64_t{0} >> 1;
     return {.number = number,
-            .seed = Hash64(seed).add_text("replication").add_u64(luck).value(),
+            .seed = Hash64(seed).add_text("replication").add_u64(luck).value() & kSigned,
             .antithetic = antithetic_pairs && number % 2 == 1};
 }
 

@@ -21,7 +21,8 @@ struct Replication {
     bool antithetic = false;  // draws 1 - u where its partner, the number before, draws u
 };
 
-// With pairs, the numbers 2k and 2k + 1 share a seed.
+// With pairs, the numbers 2k and 2k + 1 share a seed. Seeds are below 2^63, as those in scenes and
+// on command lines.
 Replication replication(std::uint64_t seed, std::uint64_t number, bool antithetic_pairs);
 
 // Makes runs, one at a time; each thread has one of its own.
