@@ -9,7 +9,7 @@ namespace {
 // Welch's way: some runs are averaged, so that what they share, the settling, stands out.
 constexpr std::uint64_t kPilots = 10;
 constexpr std::size_t kStretches = 400;
-constexpr std::size_t kFinest = 256;
+constexpr std::size_t kFinest = 1024;
 
 Diagnostics one(std::string code, std::string message, std::string remedy) {
     Diagnostic d;
@@ -49,7 +49,7 @@ Checked<SimTime> find_warm_up(const std::vector<PilotPoint>& points, std::uint64
 
 Checked<std::uint32_t> find_batches(const std::vector<PilotPoint>& points, std::uint64_t seed,
                                     SimTime warm_up, SimTime until) {
-    std::uint32_t fewest = kFinest;
+    auto fewest = static_cast<std::uint32_t>(kFinest);
     for (const PilotPoint& p : points) {
         sim::Series series;
         Diagnostic fault;
@@ -60,7 +60,8 @@ Checked<std::uint32_t> find_batches(const std::vector<PilotPoint>& points, std::
         const std::uint32_t count = sim::batches_apart(series);
         if (count == 0) {
             return Unexpected(one("batches-depend",
-                                  "even 16 batches of the run depend on each other",
+                                  "stretches of the run still depend on each other when they are "
+                                  "1/128 of it: 16 batches of eight would not be independent",
                                   "make the run longer: --for"));
         }
         fewest = std::min(fewest, count);

@@ -43,6 +43,10 @@ class Stretches {
             return false;
         }
         meter_.finish(end, values);
+        if (meter_.fault()) {  // of what goes on beside the net
+            fault = *meter_.fault();
+            return false;
+        }
         return true;
     }
 
@@ -135,17 +139,17 @@ double lag_one(const Series& series, std::size_t column) {
 }
 
 std::uint32_t batches_apart(const Series& series) {
-    constexpr std::size_t kFewest = 16;
+    constexpr std::size_t kFewest = 16, kTogether = 8;
     constexpr double kBound = 1.645;
     Series s = series;
-    for (; s.count >= kFewest; s = halved(s)) {
+    for (; s.count >= kFewest * kTogether; s = halved(s)) {
         bool apart = true;
         for (std::size_t c = 0; c < s.width; ++c) {
             apart = apart && (!whole(s, c) ||
                               lag_one(s, c) < kBound / std::sqrt(static_cast<double>(s.count)));
         }
         if (apart) {
-            return static_cast<std::uint32_t>(s.count);
+            return static_cast<std::uint32_t>(s.count / kTogether);
         }
     }
     return 0;

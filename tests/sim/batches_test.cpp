@@ -94,15 +94,125 @@ TEST_CASE("intervals from batches cover the truth as often as they say") {
     CHECK(std::abs(share - 0.95) < 4 * std::sqrt(0.95 * 0.05 / times) + 0.01);
 }
 
+TEST_CASE(
+    "intervals from as many batches as are found, and from more until they are narrow, cover") {
+    // The whole way of `--batches auto --until-half-width`: a pilot says how long batches are, then
+    // a run of its own is played batch by batch in stages. x' = 0.9 x + noise, and M/M/1 at half
+    // its load; each run 1024 stretches long.
+    const bool longer = std::getenv("PUPPETRI_LONG") != nullptr;
+    const auto check = [&](int times, double truth, double wanted, const auto& play) {
+        int covered = 0, trusted = 0;
+        for (int i = 0; i < times; ++i) {
+            const auto seed = 2 * static_cast<std::uint64_t>(i) + 1;
+            const std::uint32_t count = batches_apart(play(seed, 1024, 1));
+            if (count == 0) {
+                continue;  // too short, and it says so
+            }
+            ++trusted;
+            const std::uint64_t together = 1024 / count;
+            Tally tally;
+            std::uint64_t needed = count;
+            while (tally.count() < needed) {
+                const Series run = play(seed + 1, needed, together);
+                tally = {};
+                for (const double x : run.values) {
+                    tally.add(x);
+                }
+                needed = replications_needed(tally, count, {.half_width = wanted}, 0.95);
+            }
+            const Confidence c = staged_confidence(tally, count, 0.95);
+            covered += std::abs(c.mean - truth) <= c.half_width;
+        }
+        const double share = static_cast<double>(covered) / trusted;
+        CAPTURE(share);
+        CAPTURE(trusted);
+        CHECK(trusted > 0.8 * times);
+        const double spread = longer ? 0 : 3 * std::sqrt(0.95 * 0.05 / trusted);
+        CHECK(share >= 0.935 - spread);
+        CHECK(share <= 0.965 + spread);
+    };
+    // Stretches of 16: the means of 16 384 terms differ by sqrt(19 / 16384)
+    const auto series = [](std::uint64_t seed, std::uint64_t count, std::uint64_t together) {
+        const Series fine = autoregressive(0.9, 0, count * together * 16, seed);
+        Series out{1, count, {}};
+        for (std::uint64_t i = 0; i < count; ++i) {
+            double sum = 0;
+            for (std::uint64_t k = 0; k < together * 16; ++k) {
+                sum += fine.values[i * together * 16 + k];
+            }
+            out.values.push_back(sum / static_cast<double>(together * 16));
+        }
+        return out;
+    };
+    const double half_width = 1.96 * std::sqrt(19.0 / 16384);
+    check(longer ? 2000 : 100, 0, 100 * half_width, series);
+    check(longer ? 2000 : 100, 0, 0.7 * half_width, series);
+    const QueueNet q = make_queue(2, 1, net::exponential(1));
+    const std::vector<Metric> metrics = {{MetricKind::kTokens, q.queue}};
+    const auto queue = [&](std::uint64_t seed, std::uint64_t count, std::uint64_t together) {
+        Series out;
+        Diagnostic fault;
+        const double end = 500 + 40.0 * static_cast<double>(count * together);
+        REQUIRE(play_series(q.net, metrics, {}, seed, net::seconds(500), net::seconds(end), count,
+                            out, fault));
+        return out;
+    };
+    check(longer ? 2000 : 40, 0.5, 100, queue);  // rho^2 / (1 - rho)
+    if (longer) {
+        check(2000, 0.5, 0.015, queue);
+    }
+}
+
+TEST_CASE("intervals after a warm-up that was found cover the truth of the long run") {
+    // M/M/1 begins empty; ten pilots say when it has settled, thirty runs of their own are measured
+    const bool longer = std::getenv("PUPPETRI_LONG") != nullptr;
+    const int times = longer ? 2000 : 60;
+    const QueueNet q = make_queue(2, 1, net::exponential(1));
+    const std::vector<Metric> metrics = {{MetricKind::kTokens, q.queue}};
+    constexpr int kEnd = 2000;
+    int covered = 0, settled = 0;
+    for (int i = 0; i < times; ++i) {
+        const auto seed = 100 * static_cast<std::uint64_t>(i);
+        std::vector<Series> pilots(10);
+        Diagnostic fault;
+        for (std::uint64_t k = 0; k < pilots.size(); ++k) {
+            REQUIRE(play_series(q.net, metrics, {}, seed + k, {}, net::seconds(kEnd), 400,
+                                pilots[k], fault));
+        }
+        const auto after = settled_after(mean_of(pilots));
+        if (!after) {
+            continue;
+        }
+        ++settled;
+        const SimTime warm_up = net::seconds(kEnd / 400.0 * static_cast<double>(*after));
+        Tally tally;
+        for (std::uint64_t k = 10; k < 40; ++k) {
+            Series run;
+            REQUIRE(play_series(q.net, metrics, {}, seed + k, warm_up, net::seconds(kEnd), 1, run,
+                                fault));
+            tally.add(run.values[0]);
+        }
+        const Confidence c = confidence(tally, 0.95);
+        covered += std::abs(c.mean - 0.5) <= c.half_width;
+    }
+    const double share = static_cast<double>(covered) / settled;
+    CAPTURE(share);
+    CAPTURE(settled);
+    CHECK(settled > 0.7 * times);
+    const double spread = longer ? 0 : 3 * std::sqrt(0.95 * 0.05 / settled);
+    CHECK(share >= 0.935 - spread);
+    CHECK(share <= 0.965 + spread);
+}
+
 TEST_CASE("dependence of neighbours is seen, and batches are made so large that it goes") {
     CHECK(lag_one(autoregressive(0.9, 0, 20'000, 1), 0) == doctest::Approx(0.9).epsilon(0.02));
     CHECK(std::abs(lag_one(autoregressive(0, 0, 20'000, 2), 0)) < 0.03);
-    // Independent ones stay apart nearly always, dependent ones are joined: a lag-1 correlation of
-    // 0.9 is gone in means of some 64 (19 terms of memory)
+    // Independent ones are joined by eight nearly always, dependent ones further: a lag-1
+    // correlation of 0.9 is gone in means of some 64 (19 terms of memory), and those by eight
     int apart = 0;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
-        apart += batches_apart(autoregressive(0, 0, 1024, seed)) == 1024;
-        CHECK(batches_apart(autoregressive(0.9, 0, 1024, seed)) <= 128);
+        apart += batches_apart(autoregressive(0, 0, 1024, seed)) == 128;
+        CHECK(batches_apart(autoregressive(0.9, 0, 1024, seed)) <= 16);
     }
     CHECK(apart > 175);  // 190 expected
     // A walk that never comes back
