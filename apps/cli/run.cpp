@@ -152,6 +152,7 @@ int run(const Arguments& arguments) {
     sim::Meter meter(scene->net, *metrics);
     options->observer = metrics->empty() ? nullptr : &meter;
     std::optional<Checked<scene::Performed>> performed;
+    std::vector<double> measured(metrics->size());
     {
         Progress progress("running");
         options->go_on = go_on;
@@ -163,6 +164,9 @@ int run(const Arguments& arguments) {
             session.run();
         }
         performed.emplace(session.finish());
+        if (*performed) {  // equations are measured while they are there
+            meter.finish((*performed)->end, measured);
+        }
     }
     if (!*performed) {
         say_diagnostics(performed->error());
@@ -170,9 +174,7 @@ int run(const Arguments& arguments) {
     }
     const scene::Performed& result = **performed;
     bool good = true;
-    std::vector<double> measured(metrics->size());
-    meter.finish(result.end, measured);
-    if (meter.fault()) {
+    if (meter.fault() && !result.fault) {
         say_diagnostics({*meter.fault()});
         good = false;
     }

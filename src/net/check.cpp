@@ -572,7 +572,9 @@ class Check {
             want_value(m.value, s);
         }
         const bool of_times = m.seen == Seen::kStays || m.seen == Seen::kPassages;
-        if (m.seen == Seen::kState && (counts || m.statistic == Statistic::kPercentile)) {
+        const bool always = m.seen == Seen::kState || m.seen == Seen::kCourse;
+        if (always && (counts || m.statistic == Statistic::kPercentile ||
+                       (m.seen == Seen::kCourse && m.statistic == Statistic::kShare))) {
             fail(s, "type-mismatch", "counts what is there all the time",
                  "name what is to be seen");
         }

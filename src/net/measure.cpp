@@ -4,6 +4,9 @@
 namespace puppetri::net {
 
 const char* unit_of(const MeasureDraft& m) {
+    if (m.seen == Seen::kCourse) {
+        return m.unit.c_str();
+    }
     switch (m.statistic) {
         case Statistic::kShare:
         case Statistic::kCount:

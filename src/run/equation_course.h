@@ -34,6 +34,8 @@ class Equations::Course final : public OdeSystem {
     bool carry_to(double t_s, Diagnostic& fault);
     double value(std::uint32_t variable, double t_s) const;
     double output(ProgramIndex program, double t_s) const;
+    bool measure(const net::CourseQuantity& quantity, double from_s, double to_s, CourseSum& out,
+                 Diagnostic& fault) const;
 
     void save(std::vector<std::uint8_t>& out) const;
     bool restore(std::span<const std::uint8_t> bytes);
@@ -51,6 +53,7 @@ class Equations::Course final : public OdeSystem {
         std::uint32_t data = 0;  // row of data_rows_
         bool jump = false;       // an update of difference equations begins it
     };
+    class Measuring;  // equation_measure.cpp
     struct Kink {  // comes back after a delay, one degree smoother each time
         double at_s = 0;
         std::uint32_t degree = 0;

@@ -275,6 +275,8 @@ std::uint64_t Player::log_hash() const {
 
 SimTime Player::next_time() const { return {data_->engine.next_time()}; }
 
+std::span<Coupled* const> Player::coupled() const { return data_->options.coupled; }
+
 std::uint32_t Player::tokens(net::PlaceIndex p) const {
     PUP_REQUIRE(p.value < data_->net.place_count());
     return data_->engine.state().counts[p.value].total;

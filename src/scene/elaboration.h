@@ -358,6 +358,11 @@ class Elaboration {
     std::optional<Expr> enum_value(const lang::Expr& e, const Term& otherwise, ValueType type);
     void complete_events();
     void complete_equations();  // equations_block.cpp
+    // What measures may name of equations, by the instance and the name there.
+    struct Course {
+        net::CourseQuantity quantity;
+        lang::Dimension dimension;
+    };
     // Whether that is a variable of equations, which nets do not read; tells it then.
     bool told_continuous(const Instance& instance, const lang::Name& name);
     void complete_refinements();
@@ -369,6 +374,7 @@ class Elaboration {
     void complete_measures();
     void complete_measure(const Element<lang::Measure>& measure);
     std::optional<Expr> seen_value(const lang::Expr& e, const Scope& scope, bool truth);
+    const Course* course_of(const lang::Expr& e, const Scope& scope);
     std::optional<net::TransitionIndex> moment_of(const lang::Path& path, const Scope& scope,
                                                   Locals& locals);
     std::vector<net::Moment> moments_of(const std::vector<lang::Moment>& list, const Scope& scope);
@@ -401,6 +407,7 @@ class Elaboration {
     std::vector<Element<lang::Rule>> rules_;
     std::vector<Element<lang::Question>> questions_;
     std::vector<Element<lang::Measure>> measures_;
+    std::map<std::pair<std::uint32_t, std::string>, Course> courses_;
     std::vector<Element<lang::End>> ends_;  // one per formula list
     std::vector<std::pair<const lang::EventFile*, Scope>> event_files_;
     std::vector<std::pair<const lang::Block*, Scope>> blocks_;

@@ -101,6 +101,17 @@ class EquationsBlock final : public FormulaNames {
                                               "parameter"});
             }
         }
+        const auto number = static_cast<std::uint32_t>(e_.scene.equations.size());
+        for (std::uint32_t i = 0; i < system_.variables.size(); ++i) {
+            e_.courses_[{scope_.instance, system_.variables[i].name}] = {{number, i, false},
+                                                                         dimensions_[i]};
+        }
+        for (const std::string& name : locals_) {
+            if (const auto local = compiler_.local(name)) {
+                e_.courses_[{scope_.instance, name}] = {{number, local->first, true},
+                                                        local->second};
+            }
+        }
         system_.code = std::move(formula_.code);
         system_.locals = std::move(formula_.locals);
         tell_stale();
@@ -671,7 +682,8 @@ bool Elaboration::told_continuous(const Instance& instance, const lang::Name& na
               name.text + " changes all the time, and nets do not read it",
               "let the equations say when it crosses a value: `event " + name.text + "_low when " +
                   name.text + " falls through ...` and `on`, or `sensor ... when " + name.text +
-                  " > ...` and `when`");
+                  " > ...` and `when`. A measure is `mean`, `most`, `least`, `total` or `final` of "
+                  "it, or of a part that has a name in the block");
     }
     return variable;
 }

@@ -62,6 +62,15 @@ void FormulaCompiler::add_local(const lang::Name& name, const lang::Expr& e) {
     }
 }
 
+std::optional<std::pair<std::uint32_t, lang::Dimension>> FormulaCompiler::local(
+    std::string_view name) const {
+    const auto found = locals_.find(name);
+    if (found == locals_.end() || found->second.first == ~std::uint32_t{0}) {
+        return std::nullopt;
+    }
+    return found->second;
+}
+
 std::optional<ProgramIndex> FormulaCompiler::compiled(const Expr& value, const lang::Expr& e) {
     auto index = out_.code.add(value);
     if (!index) {

@@ -59,6 +59,9 @@ class FormulaCompiler {
     // `name = EXPR`; told when the name is taken. Later formulas may read it.
     void add_local(const lang::Name& name, const lang::Expr& e);
 
+    // Number and dimension of a local, where that is one and nothing was wrong with it.
+    std::optional<std::pair<std::uint32_t, lang::Dimension>> local(std::string_view name) const;
+
     // The messages of what follows speak of this element, "head.flex".
     void about(std::string element) { element_ = std::move(element); }
 

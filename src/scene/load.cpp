@@ -68,10 +68,10 @@ void Elaboration::complete() {
     complete_refinements();
     complete_states();
     complete_rules();
-    complete_measures();
     complete_ends();
     complete_events();
     complete_equations();
+    complete_measures();
     complete_blocks();
     check_cast();
     // Every argument is looked at, also where nothing asked for it.

@@ -34,7 +34,46 @@ bool paths_of(const lang::Expr& e, std::vector<const lang::Expr*>& out) {
     return true;
 }
 
+// In metres, kilograms, seconds and radians: "m/s^2".
+std::string unit_text(const lang::Dimension& d) {
+    const std::pair<const char*, int> units[] = {
+        {"m", d.length}, {"kg", d.mass}, {"rad", d.angle}, {"frames", d.frame}, {"s", d.time}};
+    std::string above, below;
+    for (const auto& [unit, power] : units) {
+        std::string& text = power > 0 ? above : below;
+        if (power != 0) {
+            text += std::string(text.empty() ? "" : "*") + unit;
+            text += power * power > 1 ? "^" + std::to_string(power < 0 ? -power : power) : "";
+        }
+    }
+    if (below.empty()) {
+        return above;
+    }
+    const bool several = below.find('*') != std::string::npos;
+    return (above.empty() ? "1" : above) + "/" + (several ? "(" + below + ")" : below);
+}
+
 }  // namespace
+
+// `fall.h`: a variable of equations, or a part of them that has a name.
+const Elaboration::Course* Elaboration::course_of(const lang::Expr& e, const Scope& scope) {
+    if (e.kind != lang::ExprKind::kPath || e.path.steps.size() < 2 ||
+        !e.path.steps.back().index.empty()) {
+        return nullptr;
+    }
+    const std::string& name = e.path.steps.back().text;
+    if (std::none_of(courses_.begin(), courses_.end(),
+                     [&](const auto& c) { return c.first.second == name; })) {
+        return nullptr;
+    }
+    lang::Path before = e.path;
+    before.steps.pop_back();
+    const Term term = resolve(before, scope);
+    const auto* instance = std::get_if<InstanceTerm>(&term);
+    const auto found =
+        instance == nullptr ? courses_.end() : courses_.find({instance->instance, name});
+    return found == courses_.end() ? nullptr : &found->second;
+}
 
 // What is seen: a truth where a share is wanted, else a number or a time.
 std::optional<Expr> Elaboration::seen_value(const lang::Expr& e, const Scope& scope, bool truth) {
@@ -201,6 +240,26 @@ void Elaboration::complete_measure(const Element<lang::Measure>& measure) {
                 }
             }
         }
+        draft().measures.push_back(std::move(out));
+        return;
+    }
+    if (const Course* course = node.from.empty() ? course_of(node.value, scope) : nullptr) {
+        if (share) {
+            refuse("what changes all the time",
+                   "let a sensor of the equations say when: `sensor high when h > 1 m`, and "
+                   "`share of x.high`");
+            return;
+        }
+        if (counts(out.statistic) || out.statistic == Statistic::kPercentile) {
+            refuse("what changes all the time",
+                   "let an event of the equations say when, and count what fires on it");
+            return;
+        }
+        out.seen = Seen::kCourse;
+        out.course = course->quantity;
+        lang::Dimension d = course->dimension;
+        d.time = static_cast<std::int8_t>(d.time + (out.statistic == Statistic::kTotal ? 1 : 0));
+        out.unit = unit_text(d);
         draft().measures.push_back(std::move(out));
         return;
     }

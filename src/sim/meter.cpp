@@ -156,6 +156,9 @@ void Meter::forget(std::int64_t from) {
 
 void Meter::begins(const run::Player& player) {
     PUP_REQUIRE(player.firings() == 0);
+    if (!followed_.empty()) {
+        coupled_.assign(player.coupled().begin(), player.coupled().end());
+    }
     for (Place& place : places_) {
         place.tokens = place.most = player.tokens(place.place);
         const bool in_order =
@@ -278,6 +281,7 @@ void Meter::finish(SimTime end, std::span<double> values) {
                 break;
         }
     }
+    follow(end, values);
     forget(end.ticks);
 }
 

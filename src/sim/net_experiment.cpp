@@ -49,6 +49,10 @@ class NetRunner final : public Runner {
             return false;
         }
         meter_.finish(end, values);
+        if (meter_.fault()) {  // of what goes on beside the net
+            fault = *meter_.fault();
+            return false;
+        }
         return true;
     }
 

@@ -107,6 +107,11 @@ void Meter::add_measure(std::uint32_t number) {
         watched_.push_back({.measure = &m, .number = number, .program = programs.value});
         return;
     }
+    if (m.seen == net::Seen::kCourse) {
+        followed_.push_back({&m, static_cast<std::uint32_t>(slots_.size())});
+        slots_.push_back(0);
+        return;
+    }
     const auto seen = static_cast<std::uint32_t>(seen_.size());
     slots_.push_back(seen);
     seen_.push_back({.measure = &m});
@@ -340,8 +345,52 @@ void Meter::turn(const Turn& turn, std::int64_t now, Value key) {
     }
 }
 
+// What goes on beside the net has kept how it went.
+void Meter::follow(SimTime end, std::span<double> values) {
+    const bool counts = end.ticks >= from_;
+    for (const Followed& f : followed_) {
+        run::CourseSum sum;
+        Diagnostic why{.code = "nothing-beside",
+                       .where = f.measure->where,
+                       .message = "the run has no equations beside it that could be measured",
+                       .remedy = "play the scene, not its net alone"};
+        const bool found =
+            counts && std::any_of(coupled_.begin(), coupled_.end(), [&](run::Coupled* c) {
+                return c->measure(f.measure->course, {from_}, end, sum, why);
+            });
+        if (!found) {
+            if (counts && !fault_) {
+                why.element = "measure " + f.measure->path;
+                fault_ = std::move(why);
+            }
+            values[f.metric] = kNothing;
+            continue;
+        }
+        const double passed_s = SimTime{end.ticks}.seconds() - SimTime{from_}.seconds();
+        switch (f.measure->statistic) {
+            case Statistic::kMost:
+                values[f.metric] = sum.most;
+                break;
+            case Statistic::kLeast:
+                values[f.metric] = sum.least;
+                break;
+            case Statistic::kFinal:
+                values[f.metric] = sum.last;
+                break;
+            case Statistic::kTotal:
+                values[f.metric] = sum.integral;
+                break;
+            default:
+                values[f.metric] = passed_s > 0 ? sum.integral / passed_s : kNothing;
+        }
+    }
+}
+
 double Meter::measured(std::uint32_t measure, std::uint32_t slot, double passed) {
     const net::MeasureDraft& m = net_->declarations().measures[measure];
+    if (m.seen == net::Seen::kCourse) {
+        return kNothing;  // see follow()
+    }
     if (m.seen != net::Seen::kState) {
         return seen_[slot].result(passed * kTick_s);
     }

@@ -7,6 +7,7 @@ Usage: sweep_test.py PROGRAM
 import csv
 import io
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -94,6 +95,69 @@ class Sweep(unittest.TestCase):
         self.assertLessEqual(float(row["half_width"]), 0.04 * float(row["mean"]))
         done = self.sweep("--until-half-width", "0.1%", "--at-most", 200, "--measure", "shop.chair.busy")
         self.assertIn("--at-most", done.stderr)
+
+    def test_the_seed_of_each_failing_run_plays_it_again(self):
+        (self.path / "fails.pup").write_text("""language 1
+scene "A counter that is too small"
+until 60 s
+data n: 0 .. 20 = 0
+place door takes exponential(3 s) tokens 1
+come: door -> door set n := n + 1
+""")
+        done = subprocess.run([PROGRAM, "sweep", "fails.pup", "--replications", "100", "--json"], cwd=self.path,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        failures = json.loads(done.stdout)["points"][0]["failures"]
+        self.assertGreater(len(failures), 20)
+        self.assertIn(f"--seed {failures[0]['seed']}", done.stderr)
+        for failure in failures:
+            again = subprocess.run([PROGRAM, "run", "fails.pup", "--seed", str(failure["seed"])], cwd=self.path,
+                                   capture_output=True, text=True)
+            self.assertIn("n would leave its range", again.stderr)
+            self.assertEqual(again.returncode, 1)
+        large = subprocess.run([PROGRAM, "run", "fails.pup", "--seed", str(2 ** 63)], cwd=self.path,
+                               capture_output=True, text=True)
+        self.assertEqual(large.returncode, 2)
+        self.assertIn("whole number", large.stderr)
+
+    def test_equations_are_measured_in_runs_and_sweeps(self):
+        # x' = -x/s from 1, and n that jumps to x whenever the bell rings: means over 4 s
+        (self.path / "decay.pup").write_text("""language 1
+scene "Decay"
+until 4 s
+equations decays(bell: transition) {
+  x starts at 1
+  x.rate = -x/1 s
+  double = 2*x
+  on bell set x := 1
+}
+place waits takes 1 .. 3 s tokens 1
+bell: waits ->
+use decays(bell) as d
+measure level mean of d.x
+measure twice mean of d.double
+measure at_last final of d.x
+measure high most of d.x
+measure rang total of time in waits
+""")
+        done = subprocess.run([PROGRAM, "run", "decay.pup", "--json"], cwd=self.path, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)["measures"]
+        rang = found["rang"]["value"]
+        level = (2 - math.exp(-rang) - math.exp(rang - 4)) / 4
+        self.assertAlmostEqual(found["level"]["value"], level, places=7)
+        self.assertAlmostEqual(found["twice"]["value"], 2 * level, places=7)
+        self.assertAlmostEqual(found["at_last"]["value"], math.exp(rang - 4), places=7)
+        self.assertAlmostEqual(found["high"]["value"], 1, places=9)
+        # Over many runs: E level with the bell uniform on 1 .. 3 s
+        csv_text = subprocess.run([PROGRAM, "sweep", "decay.pup", "--replications", "400", "--csv", "-"], cwd=self.path,
+                                  capture_output=True, text=True).stdout
+        row = {r["measure"]: r for r in csv.DictReader(io.StringIO(csv_text))}["level"]
+        truth = (2 - (math.exp(-1) - math.exp(-3))) / 4
+        self.assertLess(abs(float(row["mean"]) - truth), 2 * float(row["half_width"]) + 1e-4)
+        refused = subprocess.run([PROGRAM, "solve", "decay.pup", "--measure", "level"], cwd=self.path, capture_output=True,
+                                 text=True)
+        self.assertIn(refused.returncode, (2, 3))
 
     def test_a_killed_sweep_goes_on_to_the_same_numbers(self):
         arguments = ["--for", "400h", "--replications", "4000", "--journal", "journal", "--measure", "shop.queue.stay",

@@ -29,10 +29,19 @@ enum class Statistic : std::uint8_t {
 };
 
 enum class Seen : std::uint8_t {
-    kState,    // `value` at every time
-    kFirings,  // `value` just before each firing of one of `from`
-    kStays,    // how long tokens were in `place`, of those that left
-    kPassages  // from a firing of `from` to the next one of `to` that belongs to it
+    kState,     // `value` at every time
+    kFirings,   // `value` just before each firing of one of `from`
+    kStays,     // how long tokens were in `place`, of those that left
+    kPassages,  // from a firing of `from` to the next one of `to` that belongs to it
+    kCourse     // `course`, which goes on continuously beside the net, at every time
+};
+
+// A variable of equations, or a part of them that has a name (run/equations.h): the net itself
+// knows no more than where to ask.
+struct CourseQuantity {
+    std::uint32_t system = 0;  // number of the equations among those of the scene
+    std::uint32_t index = 0;   // of the variable, or of the part
+    bool part = false;
 };
 
 // A transition, and what is evaluated just before it fires, its variables bound: what is seen there
@@ -56,9 +65,11 @@ struct MeasureDraft {
     Expr value;                    // of kState: a number or a time, of kShare a bool
     PlaceIndex place;
     std::vector<Moment> from, to;
+    CourseQuantity course;  // of kCourse: mean, most, least, total, final
+    std::string unit;       // of kCourse: of the number that is told
 };
 
-// "s", "1/s", or nothing.
+// "s", "1/s", or nothing; of kCourse its own.
 const char* unit_of(const MeasureDraft& measure);
 // "mean", ..., as the language writes them.
 const char* name_of(Statistic statistic);

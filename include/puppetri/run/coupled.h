@@ -12,9 +12,16 @@
 #include "puppetri/base/time.h"
 #include "puppetri/net/host.h"
 #include "puppetri/net/indices.h"
+#include "puppetri/net/measure.h"
 #include "puppetri/net/state.h"
 
 namespace puppetri::run {
+
+// How a quantity went for some time.
+struct CourseSum {
+    double integral = 0;  // over the time, in seconds
+    double most = 0, least = 0, last = 0;
+};
 
 // Roots are rounded up to whole milliseconds; what lies less than a microsecond above one counts as
 // that one, so that the last digits of an integration do not delay a crossing that is meant there.
@@ -43,6 +50,13 @@ class Coupled {
     virtual void deliver() = 0;
     // Whether it may ever cross anything, should nothing else happen.
     virtual bool may_cross() const = 0;
+
+    // How a quantity of it went from `from` to `to`, which has been played.
+    // Gives   false where it has none such, or it has no value there: `fault` says why then.
+    virtual bool measure(const net::CourseQuantity& /*quantity*/, SimTime /*from*/, SimTime /*to*/,
+                         CourseSum& /*out*/, Diagnostic& /*fault*/) {
+        return false;
+    }
 
     // All that decides its future; what the state of the net says is not in it.
     virtual void save(std::vector<std::uint8_t>& out) const = 0;

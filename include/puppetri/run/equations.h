@@ -111,6 +111,13 @@ class Equations final : public Coupled {
     bool may_cross() const override;
     void save(std::vector<std::uint8_t>& out) const override;
     bool restore(std::span<const std::uint8_t> bytes) override;
+    // Integrals are those of the interpolants: of variables exact but for rounding, of parts to
+    // 1e-10 of their size. Extremes are found to rounding where a step, which follows the variables
+    // closely, has no more than a few of them. Needs `record`. Fails   "evaluation-fault": a part
+    // has no value somewhere. Cost: about 20 evaluations per step.
+    // Source  nodes and weights: Kronrod's 15-point rule, as in Piessens et al., QUADPACK (1983).
+    bool measure(const net::CourseQuantity& quantity, SimTime from, SimTime to, CourseSum& out,
+                 Diagnostic& fault) override;
 
     // The run is over, and nothing changes any more: goes on up to `at`, whatever it crosses.
     bool carry_to(SimTime at, Diagnostic& fault);

@@ -136,6 +136,8 @@ class Player {
     std::uint64_t log_hash() const;
     // When something happens next by itself; never() if nothing does.
     SimTime next_time() const;
+    // What goes on beside the net.
+    std::span<Coupled* const> coupled() const;
 
     std::uint32_t tokens(net::PlaceIndex p) const;  // ready or not
     std::uint32_t ready_tokens(net::PlaceIndex p) const;

@@ -40,7 +40,8 @@ class Meter final : public run::Observer {
     Meter(const net::Net& net, std::span<const Metric> metrics) : Meter(net, metrics, Options{}) {}
 
     // The run is over, or a part of it: what follows counts anew from there. Writes one number per
-    // metric, NaN where nothing was seen; of a run that ends before `from`, 0 or NaN.
+    // metric, NaN where nothing was seen; of a run that ends before `from`, 0 or NaN. Where
+    // equations are measured, what is coupled to the player must still be there.
     void finish(SimTime end, std::span<double> values);
     // A measure cannot be computed in some state of this run (a division by zero).
     const std::optional<Diagnostic>& fault() const { return fault_; }
@@ -121,6 +122,13 @@ class Meter final : public run::Observer {
         ValueKind kind = ValueKind::kInt;
     };
 
+    // Something that goes on beside the net.
+    struct Followed {
+        const net::MeasureDraft* measure = nullptr;
+        std::uint32_t metric = 0;
+    };
+
+    void follow(SimTime end, std::span<double> values);
     std::uint32_t place_number(std::uint32_t place);
     void lay_out_arcs();
     void lay_out_watched();
@@ -145,6 +153,8 @@ class Meter final : public run::Observer {
     net::Rows<Arc> arcs_;                // by transition
     std::vector<Watched> watched_;
     std::vector<Seen> seen_;
+    std::vector<Followed> followed_;
+    std::vector<run::Coupled*> coupled_;                   // of the run that is followed
     std::vector<Passage> passages_;                        // by number in seen_
     net::Rows<std::uint32_t> watched_at_;                  // by transition
     std::vector<std::uint32_t> watched_always_;            // may change between firings
