@@ -126,6 +126,9 @@ TEST_CASE(
         const double share = static_cast<double>(covered) / trusted;
         CAPTURE(share);
         CAPTURE(trusted);
+        if (longer) {
+            MESSAGE("of ", trusted, " intervals cover ", share);
+        }
         CHECK(trusted > 0.8 * times);
         const double spread = longer ? 0 : 3 * std::sqrt(0.95 * 0.05 / trusted);
         CHECK(share >= 0.935 - spread);
@@ -198,6 +201,9 @@ TEST_CASE("intervals after a warm-up that was found cover the truth of the long 
     const double share = static_cast<double>(covered) / settled;
     CAPTURE(share);
     CAPTURE(settled);
+    if (longer) {
+        MESSAGE("of ", settled, " intervals cover ", share);
+    }
     CHECK(settled > 0.7 * times);
     const double spread = longer ? 0 : 3 * std::sqrt(0.95 * 0.05 / settled);
     CHECK(share >= 0.935 - spread);
