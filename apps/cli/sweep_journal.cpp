@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -185,10 +187,12 @@ void SweepJournal::read(const std::string& path, std::uint64_t& offset) {
 }
 
 void SweepJournal::write(const std::string& line) {
-    if (std::fputs(line.c_str(), file_) < 0 || std::fflush(file_) != 0) {
-        broken_ = true;
-    }
+    broken_ |= std::fputs(line.c_str(), file_) < 0;
 }
+
+void SweepJournal::settle() { broken_ |= std::fflush(file_) != 0; }
+
+void PointJournal::settle() { owner_->settle(); }
 
 sim::Journal::Known PointJournal::recall(std::uint64_t number, std::span<double> values,
                                          Diagnostic& fault) {
@@ -208,8 +212,11 @@ void PointJournal::keep(std::uint64_t number, std::span<const double> values) {
     std::string line = std::to_string(point_) + " " + std::to_string(number);
     for (const double x : values) {
         char text[40];
-        std::snprintf(text, sizeof text, " %a", x);
-        line += text;
+        const auto end =
+            std::to_chars(text, text + sizeof text, std::abs(x), std::chars_format::hex).ptr;
+        line += std::signbit(x) ? " -" : " ";
+        line += std::isfinite(x) ? "0x" : "";
+        line.append(text, end);
     }
     owner_->write(line + "\n");
 }

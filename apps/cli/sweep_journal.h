@@ -31,6 +31,7 @@ class PointJournal final : public sim::Journal {
     Known recall(std::uint64_t number, std::span<double> values, Diagnostic& fault) override;
     void keep(std::uint64_t number, std::span<const double> values) override;
     void keep_failure(std::uint64_t number, const Diagnostic& fault) override;
+    void settle() override;
     bool wait() override;
 
  private:
@@ -65,6 +66,7 @@ class SweepJournal {
     SweepJournal() = default;
     void read(const std::string& path, std::uint64_t& offset);
     void write(const std::string& line);
+    void settle();
 
     std::string folder_;
     std::uint64_t fingerprint_ = 0;

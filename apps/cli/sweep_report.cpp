@@ -12,16 +12,6 @@
 namespace puppetri::cli {
 namespace {
 
-sim::Tally tally_of(const sim::Outcome& outcome, std::size_t column) {
-    sim::Tally tally;
-    for (std::size_t i = 0; i < outcome.numbers.size(); ++i) {
-        if (const double x = outcome.row(i)[column]; !std::isnan(x)) {
-            tally.add(x);
-        }
-    }
-    return tally;
-}
-
 std::string exact(double x) {
     if (!std::isfinite(x)) {
         return "";
@@ -40,7 +30,7 @@ std::string exact(double x) {
 
 bool all_zero(const SweepResult& result, std::size_t column) {
     return std::all_of(result.points.begin(), result.points.end(), [&](const SweepPoint& p) {
-        const sim::Tally t = tally_of(p.outcome, column);
+        const sim::Tally& t = p.outcome.tallies[column];
         return t.count() == 0 || (t.low() == 0 && t.high() == 0);
     });
 }
@@ -60,7 +50,14 @@ std::string with_precision(double x, double half_width) {
     if (!std::isfinite(x)) {
         return "-";
     }
-    // Two digits of the interval, and as many of the mean
+    char text[40];
+    // Two digits of the interval, and as many of the mean: 1740 and 220, 0.119 and 0.026
+    if (half_width >= 1e-4 && half_width < 1e7 && std::abs(x) < 1e9) {
+        const int last = static_cast<int>(std::floor(std::log10(half_width))) - 1;
+        const double unit = std::pow(10.0, std::max(last, 0));
+        std::snprintf(text, sizeof text, "%.*f", std::max(-last, 0), std::round(x / unit) * unit);
+        return text;
+    }
     int digits = 6;
     if (std::isfinite(half_width) && half_width > 0) {
         digits = std::clamp(
@@ -68,7 +65,6 @@ std::string with_precision(double x, double half_width) {
                                             std::floor(std::log10(half_width)))),
             2, 12);
     }
-    char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, x);
     return text;
 }
@@ -87,7 +83,7 @@ std::string sweep_csv(const SweepResult& result) {
             parameters += csv_field(s.value) + ",";
         }
         for (std::size_t m = 0; m < result.measures.size(); ++m) {
-            const sim::Tally t = tally_of(point.outcome, m);
+            const sim::Tally& t = point.outcome.tallies[m];
             out += parameters + csv_field(result.measures[m].name) + "," + result.measures[m].unit +
                    "," + std::to_string(t.count()) + "," +
                    std::to_string(point.outcome.failures.size()) + "," +
@@ -126,7 +122,7 @@ std::string sweep_json(const SweepResult& result) {
         json.member("precise_enough", o.precise_enough);
         json.key("measures").begin_object();
         for (std::size_t m = 0; m < result.measures.size(); ++m) {
-            const sim::Tally t = tally_of(o, m);
+            const sim::Tally& t = o.tallies[m];
             json.key(result.measures[m].name).begin_object();
             json.member("unit", result.measures[m].unit);
             if (!result.measures[m].caption.empty()) {
@@ -182,7 +178,7 @@ std::string sweep_table(const SweepResult& result, bool all) {
                 row.push_back(s.value);
             }
             const sim::Confidence& c = point.outcome.means[m];
-            const sim::Tally t = tally_of(point.outcome, m);
+            const sim::Tally& t = point.outcome.tallies[m];
             row.push_back(result.measures[m].name);
             row.push_back(with_precision(c.mean, c.half_width));
             row.push_back(std::isfinite(c.half_width) ? with_precision(c.half_width, c.half_width)

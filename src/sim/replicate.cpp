@@ -150,6 +150,9 @@ class Stage {
             }
             outcome_.failures.push_back(std::move(f));
         }
+        if (plan_.journal != nullptr) {
+            plan_.journal->settle();
+        }
         played.finished.clear();
         played.failures.clear();
         done_ += more;
@@ -175,14 +178,15 @@ class Stage {
     alignas(64) std::atomic<std::uint64_t> next_;
     std::atomic<bool> stopped_{false};
 };
-// The independent observations of each column: block by block of numbers, and the blocks in their
-// order, so that threads can share them and rounding is the same however many there are.
-std::vector<Tally> observations(const Plan& plan, std::size_t width,
+// The observations of each column, single runs or means of pairs: block by block of numbers, and
+// the blocks in their order, so that threads can share them and rounding is the same however many
+// there are.
+std::vector<Tally> observations(const Plan& plan, bool pairs, std::size_t width,
                                 const std::vector<Known>& state,
                                 const std::vector<double>& values) {
     constexpr std::uint64_t kBlock = 4096;  // whole pairs
     const std::uint64_t blocks = (state.size() + kBlock - 1) / kBlock;
-    const std::uint64_t step = plan.antithetic ? 2 : 1;
+    const std::uint64_t step = pairs ? 2 : 1;
     std::vector<Tally> parts(blocks * width);
     std::atomic<std::uint64_t> next{0};
     on_threads(std::clamp<std::uint64_t>(blocks, 1, std::max(1U, plan.threads)), [&] {
@@ -256,7 +260,8 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
     // Independent observations of the first stage: fewer than planned where some failed
     std::vector<std::uint64_t> first_stage(width);
     play_to(first);
-    std::vector<Tally> observed = observations(plan, width, state, values);
+    // What is independent: pairs, where there are any
+    std::vector<Tally> observed = observations(plan, plan.antithetic, width, state, values);
     for (std::size_t c = 0; c < width; ++c) {
         first_stage[c] = observed[c].count();
     }
@@ -280,7 +285,7 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
             break;
         }
         play_to(next);
-        observed = observations(plan, width, state, values);
+        observed = observations(plan, plan.antithetic, width, state, values);
     }
 
     for (std::size_t c = 0; c < width; ++c) {
@@ -292,6 +297,8 @@ Outcome replicate(const Experiment& experiment, const Plan& plan) {
             outcome.means.back().mean = std::numeric_limits<double>::quiet_NaN();
         }
     }
+    outcome.tallies =
+        plan.antithetic ? observations(plan, false, width, state, values) : std::move(observed);
     for (std::uint64_t n = 0; n < state.size(); ++n) {
         if (state[n] == Known::kFinished) {
             // Rows move up where some are missing

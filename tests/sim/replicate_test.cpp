@@ -151,6 +151,14 @@ TEST_CASE("of many short runs too, each number, mean and interval is the same on
                 }
             }
             std::erase_if(seen, [](long double x) { return std::isnan(x); });
+            std::uint64_t singles = 0;
+            double most = -INFINITY;
+            for (const auto& [number, x] : by_number) {
+                singles += !std::isnan(x);
+                most = std::isnan(x) ? most : std::max(most, x);
+            }
+            CHECK(one.tallies[c].count() == singles);
+            CHECK(one.tallies[c].high() == most);
             long double sum = 0, squares = 0;
             for (const long double x : seen) {
                 sum += x;

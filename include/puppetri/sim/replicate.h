@@ -54,6 +54,8 @@ class Journal {
     // millisecond, a few milliseconds later.
     virtual void keep(std::uint64_t number, std::span<const double> values) = 0;
     virtual void keep_failure(std::uint64_t number, const Diagnostic& fault) = 0;
+    // What has been kept so far is to be safe from now on.
+    virtual void settle() {}
     // Some replications of others are missing: looks what there is by now, after a while.
     // Gives   false if nobody is to be waited for.
     virtual bool wait() { return false; }
@@ -95,6 +97,7 @@ struct Outcome {
     // Per column: of the replications that have a number there. One that has none (a mean wait
     // where nobody waited) is NaN in `values`; a mean of none is NaN.
     std::vector<Confidence> means;
+    std::vector<Tally> tallies;  // per column: of the single replications, also of pairs
     bool interrupted = false;    // go_on said so
     bool missing = false;        // shares of other processes are not there yet
     bool precise_enough = true;  // false: at_most came first
