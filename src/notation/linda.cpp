@@ -48,6 +48,8 @@ bool is_ends(const Property& p) {
            !p.has_children;
 }
 
+}  // namespace
+
 bool compatible(const LindaPattern& a, const LindaPattern& b) {
     if (a.kind != b.kind || a.constants.size() != b.constants.size()) {
         return a.kind == b.kind;
@@ -60,8 +62,6 @@ bool compatible(const LindaPattern& a, const LindaPattern& b) {
     }
     return true;
 }
-
-}  // namespace
 
 bool is_fixed(const LindaField& parameter) {
     static constexpr std::array kTypes = {
@@ -556,6 +556,16 @@ void Linda::make_ways() {
 
 void lower_linda(const lang::Block& block, const lang::File& file, Lowered& out) {
     Linda(block, file, out).lower();
+    // What is wrong in a program is found in each of its instances.
+    Diagnostics told;
+    for (Diagnostic& d : out.diagnostics) {
+        if (std::none_of(told.begin(), told.end(), [&](const Diagnostic& other) {
+                return other.code == d.code && other.where == d.where;
+            })) {
+            told.push_back(std::move(d));
+        }
+    }
+    out.diagnostics = std::move(told);
 }
 
 }  // namespace puppetri::notation

@@ -157,6 +157,7 @@ class LindaProgram {
     bool choose(const Step& s);
     bool again(const Step& s);
     bool come_back(const Step& s);
+    void check_round(lang::Span where, std::size_t puts, std::size_t takes);
     bool branches(const Step& s, Open yes, Open no, const Variables& bound);
 
     // -- values
@@ -189,9 +190,12 @@ class LindaProgram {
     std::optional<LindaBecomes> becomes_;
     Variables variables_;
     std::vector<Open> open_;
-    int branches_ = 0, endless_ = 0;
+    int branches_ = 0, endless_ = 0, waits_ = 0;  // waits_: lines that last, so far
     bool slow_ = false, returned_ = false;
 };
+
+// A tuple that is put like one may be taken like the other.
+bool compatible(const LindaPattern& a, const LindaPattern& b);
 
 // A parameter that must be known before the run.
 bool is_fixed(const LindaField& parameter);

@@ -608,6 +608,7 @@ bool LindaProgram::act(const Step& s) {
         return true;
     }
     // Durations and arguments see the token's attributes by their own names.
+    ++waits_;
     lang::Place& place = enter(name, s);
     const Expr* time = does ? nullptr : e;
     if (does) {
@@ -641,6 +642,7 @@ bool LindaProgram::hear(const Step& s) {
     lang::Transition& t = space_.body_.transitions[number];
     (waits ? t.events : t.raises) = std::move(events);
     t.next_event = waits;
+    waits_ += waits ? 1 : 0;
     open_.push_back({number, {}});
     return waits;
 }
@@ -738,6 +740,8 @@ bool LindaProgram::again(const Step& s) {
     }
     open_.push_back(std::move(round));
     const bool slow = slow_;
+    const int waits = waits_;
+    const std::size_t puts = space_.made_.puts.size(), takes = space_.made_.takes.size();
     (ends ? branches_ : endless_) += 1;
     const bool time = lines(s.head.property->children);
     (ends ? branches_ : endless_) -= 1;
@@ -745,6 +749,8 @@ bool LindaProgram::again(const Step& s) {
     if (!time && !ends && !open_.empty()) {
         space_.error("zero-time-loop", s.span, "a round of this may take no time at all",
                      "put a wait TIME into it, a movement, or an `in` that waits for a tuple");
+    } else if (!ends && !open_.empty() && waits == waits_) {
+        check_round(s.span, puts, takes);
     }
     go_to(name, s.span);
     if (ends) {
@@ -752,6 +758,25 @@ bool LindaProgram::again(const Step& s) {
     }
     variables_.resize(outer);
     return !ends;
+}
+
+// A round in which nothing lasts, and that puts itself all that it takes: `puts` and `takes` are
+// where its own begin.
+void LindaProgram::check_round(Span where, std::size_t puts, std::size_t takes) {
+    const std::vector<LindaPattern>&all = space_.made_.puts, &wanted = space_.made_.takes;
+    const bool feeds_itself = std::all_of(
+        wanted.begin() + static_cast<std::ptrdiff_t>(takes), wanted.end(),
+        [&](const LindaPattern& t) {
+            return !t.removes ||
+                   std::any_of(all.begin() + static_cast<std::ptrdiff_t>(puts), all.end(),
+                               [&](const LindaPattern& p) { return compatible(p, t); });
+        });
+    if (feeds_itself) {
+        space_.warn("zero-time-poll", where,
+                    "nothing in a round of this lasts, and what it takes it puts itself: it may go "
+                    "round for ever in no time",
+                    "put a wait TIME into it, or a movement");
+    }
 }
 
 }  // namespace puppetri::notation

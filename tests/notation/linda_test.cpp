@@ -270,6 +270,25 @@ linda space {
     }
 }
 
+TEST_CASE("a defect of a program is told once, however many run it [unit]") {
+    const Diagnostics list = defects_of(R"(use s
+cast {
+  ana: mannequin
+  rui: mannequin { at (2, 0, 0) m }
+}
+linda s {
+  start p(ana)
+  start p(rui)
+  process p(me: actor) {
+    wait
+    does me.wave() twice
+    eval nobody(me)
+  }
+}
+)");
+    CHECK(list.size() == 3);
+}
+
 TEST_CASE("tuples that nobody puts, and those that nobody takes, are warned of [unit]") {
     const auto told_of = [](const char* lines) {
         std::string got;
@@ -285,6 +304,17 @@ TEST_CASE("tuples that nobody puts, and those that nobody takes, are warned of [
     CHECK(told_of("  start p\n  process p {\n    in a(1, get(b))\n  }\n  out a(1, yes)\n") == "");
     CHECK(told_of("  start p\n  process p {\n    repeat {\n      wait 1 s\n      out a(1, yes)\n"
                   "    }\n  }\n") == "11 grows-without-bound\n");
+    for (const char* round :
+         {"in a(get(n), get(b))\n      out a(n, b)", "in a(_, _)\n      out a(1, no)"}) {
+        CHECK(
+            told_of((std::string("  out a(1, no)\n  start p\n  process p {\n    repeat {\n      ") +
+                     round + "\n    }\n  }\n")
+                        .c_str()) == "10 zero-time-poll\n");
+    }
+    CHECK(told_of(
+              "  out a(1, no)\n  start p\n  process p {\n    repeat {\n      in a(1, _)\n"
+              "      out a(2, no)\n    }\n  }\n  start q\n  process q {\n    in a(2, _)\n  }\n") ==
+          "");
     CHECK(told_of("  start p\n  process p {\n    eval q\n  }\n  process q {\n    eval p\n  }\n")
               .find("zero-time-loop") != std::string::npos);
     CHECK(told_of("  start p\n  process p {\n    wait 1 s\n    eval p\n    eval p\n  }\n") ==
