@@ -13,7 +13,7 @@ namespace {
 // slice that took no time is followed by one twice as long.
 constexpr SimTime kSlice{kTicksPerSecond / 20};
 constexpr std::uint64_t kSliceFirings = 10'000;
-constexpr auto kShort = std::chrono::milliseconds(10);
+constexpr auto kShort = std::chrono::milliseconds(10);  // allowed: how often the asker is heard
 constexpr SimTime kLongest{3600 * kTicksPerSecond};
 
 run::Limits limits_of(const Horizon& horizon) {
@@ -100,7 +100,7 @@ void Session::run() {
         return;
     }
     // In slices, so that the asker is heard; slices do not change what happens.
-    using Clock = std::chrono::steady_clock;
+    using Clock = std::chrono::steady_clock;  // allowed: how often the asker is heard
     SimTime length = kSlice;
     Clock::time_point begun = Clock::now();
     for (;;) {
