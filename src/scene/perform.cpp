@@ -2,7 +2,7 @@
 #include "puppetri/scene/perform.h"
 
 #include <algorithm>
-#include <chrono>
+#include <chrono>  // allowed: how often the asker is heard
 
 #include "puppetri/base/hash.h"
 
