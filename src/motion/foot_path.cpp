@@ -236,6 +236,8 @@ Vec3 landing_place(const figure::Figure& figure, const MotionContext& context, S
 
 }  // namespace
 
+constexpr double kFromToes_s = 0.75;
+
 Landing put_down(const figure::Figure& figure, const MotionContext& context, Side side) {
     const FootState now = foot_state(figure, context, side);
     const double floor_y = floor_under(figure, context);
@@ -250,9 +252,11 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
             // Such a foot, and one that is flat but for a hair, may leave at once.
             const bool heel_up = now.pitch.position < -radians(1);
             const bool rolls = now.pitch.position > radians(1) || now.pitch.velocity > 0.3;
+            // One on its toes behind a step that came to rest has the whole way back to wait for.
+            const double steep = clamp((-now.pitch.position - radians(25)) / radians(33), 0, 1);
+            const double waits = 0.45 * std::fmin(1, length(context.rate.pelvis_velocity_world));
             const double roll_s =
-                kRollFlat_s +
-                (heel_up ? 0.45 * std::fmin(1, length(context.rate.pelvis_velocity_world)) : 0);
+                kRollFlat_s + (heel_up ? std::fmax(waits, kFromToes_s * steep) : 0);
             landing.flat_s = rolls && !heel_up ? kRollFlat_s : 0;
             landing.path.set_pitch(roll_flat(now.pitch, roll_s));
         }
@@ -279,16 +283,19 @@ Landing put_down(const figure::Figure& figure, const MotionContext& context, Sid
     return landing;
 }
 
+constexpr double kFarthest = 0.85;
+
 // With the highest reach h and a margin w the height y becomes y - d^2 / (4 w) for d = y - (h - w)
 // in [0, 2 w], which joins y below and h above with a continuous slope. Across the floor, beyond a
 // = 0.70 of the leg the distance d becomes a + b (1 - exp(-(d - a) / b)), never more than a + b =
-// 0.85 of the leg.
+// 0.85 of the leg. Who is found farther off than a has been drawn near already: its own distance is
+// a then, so that it stays where it is.
 double KeepReach::highest(std::size_t side, Controls& c) const {
     constexpr double kReach = 0.9990;
     const Vec3 hip = rotate(c.pelvis.rotation_world, figure_->legs[side].hip_pelvis);
     Vec3 d = c.pelvis.position_world + hip - c.legs[side].ankle_world;
-    const double level = std::sqrt(d.x * d.x + d.z * d.z), a = 0.70 * figure_->leg_m,
-                 b = 0.15 * figure_->leg_m;
+    const double level = std::sqrt(d.x * d.x + d.z * d.z), a = near_[side] * figure_->leg_m,
+                 b = std::fmax(kFarthest - near_[side], 0.02) * figure_->leg_m;
     if (level > a) {
         const double near = (a + b * (1 - puppetri::exp(-(level - a) / b))) / level;
         c.pelvis.position_world = c.pelvis.position_world - Vec3{d.x, 0, d.z} * (1 - near);
@@ -303,6 +310,11 @@ KeepReach::KeepReach(const figure::Figure& figure, std::array<bool, 2> stands, c
     for (std::size_t side = 0; side < 2; ++side) {
         Controls c = now;
         if (stands[side]) {
+            const Vec3 d = now.pelvis.position_world +
+                           rotate(now.pelvis.rotation_world, figure.legs[side].hip_pelvis) -
+                           now.legs[side].ankle_world;
+            const double level = std::sqrt(d.x * d.x + d.z * d.z);
+            near_[side] = clamp(level / figure.leg_m, near_[side], kFarthest - 0.01);
             missing_m_[side] = std::fmax(0, now.pelvis.position_world.y - highest(side, c));
         }
     }
@@ -310,7 +322,7 @@ KeepReach::KeepReach(const figure::Figure& figure, std::array<bool, 2> stands, c
 
 void KeepReach::apply(std::array<bool, 2> stands, double since_start_s, Controls& c) const {
     constexpr double kLetsGo_s = 0.25;
-    const double w = 1e-7 + 0.0009 * smooth_rise(since_start_s, 0.1);
+    const double w = 1e-10 + 0.0009 * smooth_rise(since_start_s, 0.1);
     const double missing = 1 - smooth_rise(since_start_s, kLetsGo_s);
     for (std::size_t side = 0; side < 2; ++side) {
         if (!stands[side]) {

@@ -111,6 +111,7 @@ class KeepReach {
 
     const figure::Figure* figure_ = nullptr;
     std::array<double, 2> missing_m_{};
+    std::array<double, 2> near_{0.70, 0.70};  // of the leg: across the floor nothing is done within
 };
 
 // The height of the floor: that of the lower foot while it stands; 0 while the figure flies.

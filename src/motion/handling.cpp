@@ -15,6 +15,7 @@
 #include "puppetri/motion/idle.h"
 #include "puppetri/motion/posed.h"
 #include "puppetri/motion/sitting.h"
+#include "puppetri/motion/solve_controls.h"
 
 namespace puppetri::motion {
 namespace {
@@ -22,6 +23,25 @@ namespace {
 constexpr double kOpen_m = 0.07;  // palms from the ball before they close
 constexpr double kGrasp = 0.45;   // part of a picking up until the hands have it
 constexpr double kRoll_rad = radians(38);
+
+// Whether no joint of the legs is so much beyond its limits that a foot leaves its place; a heel
+// that rises does not count.
+bool toes_stay(const figure::Figure& figure, const Controls& c) {
+    constexpr double kMoved_m = 0.001;
+    figure::Pose pose;
+    solve_controls(figure, c, pose);
+    std::vector<Transform> model(figure.skeleton.joints.size());
+    figure::to_model_space(figure.skeleton, pose, model);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const figure::Leg& leg = figure.legs[i];
+        const Vec3 toes =
+            Transform{c.legs[i].foot_rotation_world, c.legs[i].ankle_world} * leg.toes_foot;
+        if (length(model[leg.toes.value].translation - toes) > kMoved_m) {
+            return false;
+        }
+    }
+    return true;
+}
 
 // How deep the body goes, and how it bends, for a ball on the floor.
 struct Bend {
@@ -31,28 +51,34 @@ struct Bend {
     Vec3 pelvis{0, -0.36, -0.16};  // of a figure of 1.75 m
 };
 
+// Of that, beyond which thighs would have to come nearer to the belly than hips allow (120
+// degrees), and the feet would leave their place; the trunk may bend farther.
+constexpr double kDeepest = 1.05;
+
 // Who sits has bent its hips already, and bends over the seat.
 constexpr double kSeated = 0.35;
 
 class Stoop final : public PoseSource {
  public:
-    Stoop(double part, double scale, double grasp_s, double end_s)
-        : part_(part), scale_(scale), grasp_s_(grasp_s), end_s_(end_s) {}
+    // `part` of the trunk's bend, `squat` of the hips'.
+    Stoop(double part, double squat, double scale, double grasp_s, double end_s)
+        : part_(part), squat_(squat), scale_(scale), grasp_s_(grasp_s), end_s_(end_s) {}
     void sample(double t_s, PoseFrame& frame) const override {
         constexpr double kStill_s = 0.12;  // before and after the hands close
-        const double u = part_ * smooth_rise(t_s, grasp_s_ - kStill_s) *
-                         smooth_rise(end_s_ - t_s, end_s_ - grasp_s_ - kStill_s);
+        const double down = smooth_rise(t_s, grasp_s_ - kStill_s) *
+                            smooth_rise(end_s_ - t_s, end_s_ - grasp_s_ - kStill_s);
+        const double u = part_ * down, squat = squat_ * down;
         const Bend bend;
-        frame.dofs[0] = bend.hips_rad * u * (scale_ > 0 ? 1 : kSeated);
+        frame.dofs[0] = bend.hips_rad * squat * (scale_ > 0 ? 1 : kSeated);
         frame.dofs[1] = bend.spine_rad * u;
         frame.dofs[2] = bend.chest_rad * u;
         frame.dofs[3] = bend.upper_rad * u;
         frame.dofs[4] = -radians(24) * u;
-        frame.paths[0] = bend.pelvis * (scale_ * u);
+        frame.paths[0] = bend.pelvis * (scale_ * squat);
     }
 
  private:
-    double part_, scale_, grasp_s_, end_s_;
+    double part_, squat_, scale_, grasp_s_, end_s_;
 };
 
 // The hands' frame at a ball there, for a chest that is where these controls have it.
@@ -214,9 +240,21 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
     MovementPtr body;
     Controls low = context.now;
     double reach = 2;
+    double squat = 0;
     for (double part = 0; part < 1.35 && reach > kEasy; part += 0.1) {
-        body = make_posed(context, posed, std::make_shared<Stoop>(part, scale, grasp_s, own_s));
-        body->sample(grasp_s, low);
+        const auto stoop = [&](double hips) {
+            body = make_posed(context, posed,
+                              std::make_shared<Stoop>(part, hips, scale, grasp_s, own_s));
+            body->sample(grasp_s, low);
+        };
+        const double deeper = std::fmin(part, kDeepest);
+        stoop(deeper);
+        // In mid-stride the thigh ahead comes near the belly earlier.
+        if (squat < deeper && !toes_stay(figure, low)) {
+            stoop(squat);
+        } else {
+            squat = deeper;
+        }
         reach = reach_to(figure, low, spec.ball_world, spec.grip);
     }
     Vec3 at_world = spec.ball_world;
