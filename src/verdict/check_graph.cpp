@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "puppetri/net/tables.h"
+#include "quiet.h"
 
 namespace puppetri::verdict {
 namespace {
@@ -344,7 +345,16 @@ class Checker {
                 }
             }
         }
-        if (auto f = stuck(p, open, std::move(wrong),
+        // Polls that nobody answers any more are a rest like any other.
+        const Nodes quiet = quiet_for_ever(p), perhaps = quiet_perhaps(p, {}, &view_.timed->waits);
+        Nodes surely_open = open;
+        for (std::uint32_t n = 0; n < p.size(); ++n) {
+            if (!declared || p.final_marking(n)) {
+                open[n] = quiet[n] != 0 ? 0 : open[n];
+                surely_open[n] = perhaps[n] != 0 ? 0 : open[n];
+            }
+        }
+        if (auto f = stuck(p, surely_open, std::move(wrong),
                            "it may come to rest where no end is declared", "without an end")) {
             return std::move(*f);
         }
@@ -354,9 +364,21 @@ class Checker {
 
     Finding deadlock_free() {
         Product p = product(nullptr);
-        Nodes dead(p.size(), 0);
+        Nodes dead(p.size(), 0), silent(p.size(), 0);
+        const Nodes quiet = graph_.over ? quiet_for_ever(p) : Nodes(p.size(), 0);
+        bool polls = false;
         for (std::uint32_t n = 0; n < p.size(); ++n) {
             dead[n] = p.rests(n) && !p.final_marking(n) && !p.stops(n) ? 1 : 0;
+            silent[n] = quiet[n] != 0 && !p.final_marking(n) ? 1 : 0;
+            polls = polls || (silent[n] != 0 && dead[n] == 0);
+            dead[n] = dead[n] != 0 || silent[n] != 0 ? 1 : 0;
+        }
+        if (polls) {
+            Finding f = suspect(std::move(p), std::move(dead), Target::kHopeless,
+                                "it may come to where nothing ever fires again, though events go "
+                                "on, and no end is declared");
+            f.certain = std::move(silent);
+            return f;
         }
         if (any(dead)) {
             return suspect(std::move(p), std::move(dead), Target::kRest,
@@ -466,6 +488,15 @@ class Checker {
     Finding nobody_freezes() {
         Product p = product(nullptr);
         Finding weakest = holds(Force::kEveryChoice);
+        // Where an end is declared and nothing happens any more, everything has come to rest.
+        const std::vector<std::uint8_t> idle = idle_firings(net_);
+        Nodes must_end = quiet_for_ever(p, idle),
+              may_end = quiet_perhaps(p, idle, &view_.timed->waits);
+        for (std::uint32_t n = 0; n < p.size(); ++n) {
+            const bool final = p.final_marking(n);
+            must_end[n] = final && (must_end[n] != 0 || p.rests(n)) ? 1 : 0;
+            may_end[n] = final && (may_end[n] != 0 || p.rests(n)) ? 1 : 0;
+        }
         for (std::size_t i = 0; i < o_.operands.size(); ++i) {
             const Operand& moves = o_.operands[i];
             const std::string who =
@@ -482,12 +513,8 @@ class Checker {
                     must[e] = t.must ? 1 : 0;
                 }
             }
-            Nodes ends(p.size(), 0);
-            for (std::uint32_t n = 0; n < p.size(); ++n) {
-                ends[n] = p.rests(n) && p.final_marking(n) ? 1 : 0;
-            }
-            Finding f =
-                stays_possible(Product(p), may, must, ends, ends, "another movement of " + who);
+            Finding f = stays_possible(Product(p), may, must, may_end, must_end,
+                                       "another movement of " + who);
             if (f.kind != Kind::kHolds) {
                 f.subject = who;
                 return f;
