@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Data, events with their schedules, attributes of tokens.
+#include <algorithm>
+
 #include "elaboration.h"
 #include "puppetri/scene/events.h"
 
@@ -40,6 +42,7 @@ void Elaboration::complete_data() {
 }
 
 void Elaboration::complete_events() {
+    std::vector<std::string> clocks;
     for (std::size_t i = 0; i < events_.size(); ++i) {
         if (events_[i].node == nullptr) {
             continue;
@@ -48,6 +51,13 @@ void Elaboration::complete_events() {
         const Scope& scope = events_[i].scope;
         const net::EventIndex event{static_cast<std::uint32_t>(i)};
         About about(*this, "event " + events_[i].path, node.span);
+        // The inner clock of a block of a notation: time alone makes it occur.
+        const bool is_clock = !node.is_public && (node.every || !node.at.empty()) &&
+                              library_.block_of(instances_[scope.instance].net) != nullptr;
+        if (is_clock) {
+            draft().events[i].outside = false;
+            clocks.push_back(events_[i].path);
+        }
         for (const lang::Expr& when : node.at) {
             if (const auto t = constant_time(when, scope, "the time of an event")) {
                 if (t->ticks < 0) {
@@ -102,7 +112,8 @@ void Elaboration::complete_events() {
         // Names in the file are those of the net that the line stands in.
         std::vector<std::string> names;
         for (const net::EventDraft& e : draft().events) {
-            const bool inside = up.empty() || e.path.compare(0, up.size() + 1, up + ".") == 0;
+            const bool inside = (up.empty() || e.path.compare(0, up.size() + 1, up + ".") == 0) &&
+                                std::find(clocks.begin(), clocks.end(), e.path) == clocks.end();
             names.push_back(!inside ? "" : up.empty() ? e.path : e.path.substr(up.size() + 1));
         }
         EventList list = parse_event_list(text->second, file->path, names);

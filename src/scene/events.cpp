@@ -168,6 +168,11 @@ std::vector<std::string> event_names(const net::Net& net) {
     for (std::uint32_t i = 0; i < net.event_count(); ++i) {
         names.emplace_back(net.event({i}).path);
     }
+    for (const net::ScheduledEvent& s : net.declarations().schedule) {
+        if (!net.declarations().events[s.event.value].outside) {
+            names[s.event.value].clear();
+        }
+    }
     return names;
 }
 

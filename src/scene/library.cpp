@@ -243,14 +243,18 @@ bool is_movement_kind(std::string_view kind) {
     return kind == "movement" || kind == "keyframes" || kind == "clip";
 }
 
-const lang::Block* Library::equations_of(const lang::Net* net) const {
+const lang::Block* Library::block_of(const lang::Net* net) const {
     for (std::size_t i = 0; i < lowered_from.size(); ++i) {
-        if (&lowered[i] == net && lowered_from[i] != nullptr &&
-            lowered_from[i]->kind.text == "equations") {
+        if (&lowered[i] == net) {
             return lowered_from[i];
         }
     }
     return nullptr;
+}
+
+const lang::Block* Library::equations_of(const lang::Net* net) const {
+    const lang::Block* block = block_of(net);
+    return block != nullptr && block->kind.text == "equations" ? block : nullptr;
 }
 
 Library load_library(FileSource& source, const std::string& path) {

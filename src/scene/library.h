@@ -40,7 +40,9 @@ struct Library {
     Diagnostics diagnostics;                        // of reading and parsing
     bool readable = true;  // all files are there and have been parsed without errors
 
-    // The block `equations` that a net was made from; null for any other.
+    // The block of a notation that a net was made from; null for any other.
+    const lang::Block* block_of(const lang::Net* net) const;
+    // The same, if it is a block `equations`.
     const lang::Block* equations_of(const lang::Net* net) const;
 
     SourceSpan where(lang::Span span) const {

@@ -57,6 +57,22 @@ TEST_CASE("live lines say now or a time [unit]") {
     CHECK_FALSE(parse_live_event("now gone", kNames).has_value());
 }
 
+TEST_CASE("the inner clock of a notation is no event that anybody may call [unit]") {
+    const Scene scene = from_text(
+        "messages row {\n message m\n node a takes 1 s\n"
+        " node b takes 1 s\n link a b takes 0.2 s\n a sends m to b every 5 s\n}\nuse row\n"
+        "event tick every 1 s\nplace p tokens 1\nt: p -> p on tick\n");
+    const std::vector<std::string> names = event_names(scene.net);
+    const net::EventIndex clock = scene.net.find_event("row.a_sends_time");
+    const net::EventIndex tick = scene.net.find_event("tick");
+    REQUIRE(clock.valid());
+    REQUIRE(tick.valid());
+    CHECK_FALSE(scene.net.declarations().events[clock.value].outside);
+    CHECK(scene.net.declarations().events[tick.value].outside);
+    CHECK(has_errors(parse_event_list("2 s row.a_sends_time", "f", names).diagnostics));
+    CHECK(parse_event_list("2 s tick", "f", names).diagnostics.empty());
+}
+
 TEST_CASE("a recorded session replays to the same hash [law]") {
     const Scene scene = from_text(kScene);
     const std::vector<std::string> names = event_names(scene.net);

@@ -37,7 +37,8 @@ struct LiveEvent {
 EventList parse_event_list(std::string_view text, const std::string& filename,
                            std::span<const std::string> names);
 
-// The full paths of all events of a net.
+// The full paths of all events of a net; empty for those that time alone makes occur, the inner
+// clocks of notations.
 std::vector<std::string> event_names(const net::Net& net);
 
 // Reads one line. Gives nullopt for an empty line or a comment.
