@@ -692,7 +692,7 @@ TEST_CASE("random programs do only what an interpreter may do, and end where it 
             author.may_eval = !last;
             author.counters = 0;
             Program program(1);
-            author.lines(program, last ? 0 : 1, "    ", last ? 1 : 0);
+            author.lines(program, 1, "    ", last ? 1 : 0);
             if (last) {
                 author.value(program, 1);
             } else {
