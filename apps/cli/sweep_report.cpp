@@ -54,8 +54,9 @@ std::string with_precision(double x, double half_width) {
     // Two digits of the interval, and as many of the mean: 1740 and 220, 0.119 and 0.026
     if (half_width >= 1e-4 && half_width < 1e7 && std::abs(x) < 1e9) {
         const int last = static_cast<int>(std::floor(std::log10(half_width))) - 1;
-        const double unit = std::pow(10.0, std::max(last, 0));
-        std::snprintf(text, sizeof text, "%.*f", std::max(-last, 0), std::round(x / unit) * unit);
+        const double unit = std::pow(10.0, last);
+        const double rounded = last > 0 ? std::round(x / unit) * unit : x;
+        std::snprintf(text, sizeof text, "%.*f", std::max(-last, 0), rounded);
         return text;
     }
     int digits = 6;

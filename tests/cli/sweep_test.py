@@ -405,6 +405,19 @@ stay: back -> rest
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("grows-without-bound", done.stderr)
 
+    def test_tables_show_two_digits_of_the_interval_and_as_many_of_the_mean(self):
+        arguments = ["--replications", 50, "--measure", "shop.queue.stay", "--measure", "shop.chair.busy"]
+        lines = {l.split()[0]: l.split() for l in self.sweep(*arguments).stdout.splitlines()[1:]}
+        rows = self.rows(*arguments)
+        self.assertEqual({r["measure"] for r in rows}, set(lines))
+        for row in rows:
+            _, mean, half_width, *_ = lines[row["measure"]]
+            exact = float(row["half_width"])
+            last = 10.0 ** (math.floor(math.log10(exact)) - 1)  # of the digits that are shown
+            self.assertNotIn("e", mean + half_width)
+            self.assertAlmostEqual(float(half_width), exact, delta=0.51 * last)
+            self.assertAlmostEqual(float(mean), float(row["mean"]), delta=0.51 * last)
+
     def test_the_page_stands_alone(self):
         self.sweep("--vary", "shop.barbers=1..3", "--replications", 20, "--html", "page.html")
         page = (self.path / "page.html").read_text()
