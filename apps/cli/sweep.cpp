@@ -229,7 +229,9 @@ void tell_failures(const SweepResult& result) {
             Diagnostic d = failures[i].why;
             d.severity = Severity::kWarning;
             d.message = "run " + std::to_string(failures[i].replication.number) + " (--seed " +
-                        std::to_string(failures[i].replication.seed) + ") failed: " + d.message;
+                        std::to_string(failures[i].replication.seed) +
+                        (failures[i].replication.antithetic ? ", with opposite luck" : "") +
+                        ") failed: " + d.message;
             say_diagnostics({d});
         }
         if (failures.size() > kShown) {
