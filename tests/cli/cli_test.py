@@ -196,6 +196,34 @@ class Run(Cli):
         self.assertEqual(bad.returncode, 2)
         self.assertIn("bad.txt:1:5", bad.stderr)
 
+    def test_courses_are_baked_once_and_read_from_then_on(self):
+        scene = self.scene('language 1\nscene "falls"\nuntil 3 s\nequations decay {\n  x starts at 1\n'
+                           '  x.rate = -900 Hz*(x - cos(t/1 s))\n  event low when x falls through 0.5\n'
+                           '  solver stiff by sundials\n  baked "x.courses"\n}\nplace up  tokens 1\nplace down\n'
+                           'falls: up -> down on d.low\nuse decay() as d\n')
+        done = run("run", scene, "--hash")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("[not-baked]", done.stderr)
+        done = run("run", scene, "--bake", "--hash")
+        if "[no-sundials]" in done.stderr:
+            self.assertEqual(done.returncode, 2)
+            self.skipTest("this build has no SUNDIALS")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        baked = done.stdout
+        done = run("run", scene, "--hash")
+        self.assertEqual((done.returncode, done.stdout), (0, baked))
+        self.assertNotIn("warning", done.stderr)
+        for damage in (lambda b: b[:-20], lambda b: b[:40] + b"x" + b[41:]):
+            whole = (self.path / "x.courses").read_bytes()
+            (self.path / "x.courses").write_bytes(damage(whole))
+            done = run("run", scene)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("[bad-course]", done.stderr)
+            (self.path / "x.courses").write_bytes(whole)
+        done = run("run", EXAMPLES / "01_toss/toss.pup", "--bake")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--bake", done.stderr)
+
     def test_notes_of_one_kind_are_told_a_few_times(self):
         scene = self.scene("scene \"x\"\nuntil 60 s\nevent go every 1 s\nplace P takes 7 s tokens 1\nt: P -> P on go\n")
         done = run("run", scene)
