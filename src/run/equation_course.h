@@ -54,7 +54,7 @@ class Equations::Course final : public OdeSystem {
         bool jump = false;       // an update of difference equations begins it
     };
     class Measuring;  // equation_measure.cpp
-    struct Kink {  // comes back after a delay, one degree smoother each time
+    struct Kink {     // comes back after a delay, one degree smoother each time
         double at_s = 0;
         std::uint32_t degree = 0;
     };
