@@ -101,16 +101,18 @@ void tell_odd_scale(const ClipFile& file, double scale, Defects& defects, const 
     const double units = height / scale;  // of the file
     const bool cmu = units * kCmuScale > 1.3 && units * kCmuScale < 2.2;
     const bool centimetres = units * 0.01 > 0.4 && units * 0.01 < 4;
+    const auto say = [](double metres, int digits) {
+        const std::string number = number_to_text_fixed(metres, digits);
+        return "`scale " + number + "` in the scene, --scale " + number + " on the command line";
+    };
     std::string remedy;
     if (cmu) {
-        remedy =
-            "captures of CMU are in inches / 0.45: --scale " + number_to_text_fixed(kCmuScale, 6);
+        remedy = "captures of CMU are in inches / 0.45: " + say(kCmuScale, 6);
     } else if (centimetres) {
         remedy = "in centimetres it would be " + number_to_text_fixed(units * 0.01, 1) +
-                 " m: --scale 0.01";
+                 " m: " + say(0.01, 2);
     } else {
-        remedy = "say how many metres the file's unit is: --scale " +
-                 number_to_text_fixed(1.75 / units, 8) + " makes it 1.75 m";
+        remedy = "it would be 1.75 m tall with " + say(1.75 / units, 8);
     }
     defects.note(Severity::kWarning, "odd-scale", {path, 0, 0, 1}, "the skeleton",
                  "the figure is " + number_to_text_fixed(height, height < 1 ? 2 : 1) + " m tall",
