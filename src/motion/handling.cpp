@@ -20,8 +20,9 @@
 namespace puppetri::motion {
 namespace {
 
-constexpr double kOpen_m = 0.07;  // palms from the ball before they close
-constexpr double kGrasp = 0.45;   // part of a picking up until the hands have it
+constexpr double kHalfHand = 0.018;  // half a palm's breadth, of the height
+constexpr double kOpen_m = 0.07;     // palms from the ball before they close
+constexpr double kGrasp = 0.45;      // part of a picking up until the hands have it
 constexpr double kRoll_rad = radians(38);
 
 // Whether no joint of the legs is so much beyond its limits that a foot leaves its place; a heel
@@ -258,6 +259,13 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
         reach = reach_to(figure, low, spec.ball_world, spec.grip);
     }
     Vec3 at_world = spec.ball_world;
+    const double floor_y =
+        std::fmin(low.legs[0].ankle_world.y, low.legs[1].ankle_world.y) - figure.ankle_height_m;
+    const double lowest_y = floor_y + kHalfHand * figure.height_m;
+    const bool too_flat = spec.grip.flat && at_world.y < lowest_y;
+    if (too_flat) {
+        at_world.y = lowest_y;  // the hands close above it
+    }
     if (reach > kFarthest) {  // the hands go towards where it might lie, before the feet
         const Vec3 feet = (low.legs[0].ankle_world + low.legs[1].ankle_world) * 0.5;
         const Vec3 before =
@@ -282,6 +290,7 @@ PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec) {
     made.movement = side_by_side(std::move(body), std::move(arms));
     made.grasps_after = to_time(grasp_s);
     made.reaches = reach <= kFarthest && 2 * spec.grip.half_m <= kWidestGrip_m;
+    made.too_flat = too_flat;
     return made;
 }
 

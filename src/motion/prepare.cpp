@@ -399,7 +399,10 @@ void Preparer::pick_up() {
     }
     PickUp made = make_pick_up(context_, {.grip = state.grip, .ball_world = state.position_world});
     result_.movement = std::move(made.movement);
-    if (made.reaches) {
+    if (made.too_flat) {
+        note("too-flat", "palms beside a thing as flat as that would go into the floor",
+             "let it lie on something or stand on its edge, or let one hand `take` it");
+    } else if (made.reaches) {
         result_.grasps_after = made.grasps_after;
     } else {
         note("out-of-reach", "the prop lies too far off: the hands close on air",

@@ -166,6 +166,11 @@ TEST_CASE("what lies too far is not picked up, and nobody far off is handed anyt
         return p.notes.empty() ? std::string() : p.notes.front().code;
     };
     CHECK(notes(" ball: sphere { at (0, 0.11, 2) m }\n", "pick_up(ball)") == "out-of-reach");
+    // A plank; a board that a palm fits beside.
+    CHECK(notes(" ball: box { size (0.4, 0.02, 0.15) m, at (0, 0.01, 0.4) m }\n",
+                "pick_up(ball)") == "too-flat");
+    CHECK(notes(" ball: box { size (0.4, 0.08, 0.15) m, at (0, 0.04, 0.4) m }\n",
+                "pick_up(ball)") == "");
     CHECK(notes(" ball: sphere { at (0, 0.11, 0.4) m }\n", "pick_up(ball)") == "");
     CHECK(notes(" ball: box { size (0.8, 0.3, 0.8) m, at (0, 0.15, 0.4) m }\n", "pick_up(ball)") ==
           "out-of-reach");

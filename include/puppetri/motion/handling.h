@@ -14,9 +14,10 @@ struct PickUpSpec {
     double duration_s = 2.4;
 };
 struct PickUp {
-    MovementPtr movement;  // all limbs; event "grasp"
-    SimTime grasps_after;  // from then on the hands hold it
-    bool reaches = true;   // false: the ball is too far off, the hands close on air
+    MovementPtr movement;   // all limbs; event "grasp"
+    SimTime grasps_after;   // from then on the hands hold it
+    bool reaches = true;    // false: the ball is too far off, the hands close on air
+    bool too_flat = false;  // a box so near to the floor that palms beside it would go into it
 };
 // Bends knees and trunk as far as the ball is low, takes it, and comes up with it; the feet stay.
 PickUp make_pick_up(const MotionContext& context, const PickUpSpec& spec);
