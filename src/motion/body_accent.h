@@ -3,6 +3,7 @@
 // trunk. Added to what another movement writes for pelvis and trunk; feet stay where that movement
 // has them.
 #pragma once
+#include "puppetri/figure/mannequin.h"
 #include "puppetri/math/quintic.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/controls.h"
@@ -32,6 +33,13 @@ struct BodyAccent {
                                               out.body.chest_from_head);
     }
 };
+
+// In parts of what knees bend: the height of a mannequin with legs of this length, where these are
+// short for the figure. In parts of the whole height its ankles would come to their limits.
+inline double crouching_height_m(const figure::Figure& figure) {
+    constexpr double kLegOfMannequin = 0.4909;  // of the height, a hair less than it is
+    return std::fmin(figure.height_m, figure.leg_m / kLegOfMannequin);
+}
 
 // A curve through rests: (time, value) with no speed at each.
 inline Curve1 through_rests(std::initializer_list<Waypoint1> points) {

@@ -53,7 +53,7 @@ class Readiness final : public Movement {
                                    .limbs = without(kAllLimbs, kBothArms)});
         phases = base_->phases;
         events = base_->events;
-        const double h = figure_.height_m;
+        const double h = crouching_height_m(figure_);
         accent_.ahead_world = {sin(spec.heading_rad), 0, cos(spec.heading_rad)};
         accent_.lift_m = through_rests({{0, 0}, {end_s_, -0.026 * h}});
         accent_.ahead_m = through_rests({{0, 0}, {end_s_, 0.006 * h}});
@@ -203,7 +203,7 @@ class Catch final : public Movement {
         arms_ = make_carry(fitted, {.grip = spec.grip, .held = spec.held});
         phases = base_->phases;
         events.insert(events.end(), base_->events.begin(), base_->events.end());
-        const double h = context.figure.height_m;
+        const double h = crouching_height_m(context.figure);
         const Vec3 facing = rotate(context.now.pelvis.rotation_world, {0, 0, 1});
         accent_.ahead_world = normalized(Vec3{facing.x, 0, facing.z}, {0, 0, 1});
         accent_.lift_m = through_rests({{0, 0}, {0.28, -0.022 * h}, {0.8, 0}});

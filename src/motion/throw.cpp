@@ -91,7 +91,7 @@ class Throw final : public Movement {
         const Vec3 facing = rotate(pelvis_over_feet(figure_, now).rotation_world, {0, 0, 1});
         accent_.ahead_world =
             normalized(Vec3{way.x, 0, way.z}, normalized(Vec3{facing.x, 0, facing.z}, {0, 0, 1}));
-        const double h = figure_.height_m, r = release_s_;
+        const double h = crouching_height_m(figure_), r = release_s_;
         low_s_ = 0.56 * r;
         const double end = r + 0.7, back = 0.85 / r;  // speeds scale with a fitted duration
         accent_.lift_m = Curve1({{0, {}},

@@ -23,9 +23,9 @@ namespace puppetri::motion {
 namespace {
 
 constexpr double kNoStep = radians(3), kPairMost = radians(100), kPairAtAll = radians(125);
-constexpr double kStep_s = 0.22;  // a step at ease
-constexpr double kAside = 0.040;  // of the height, at 90 degrees
-constexpr double kClearance_m = 0.028;
+constexpr double kStep_s = 0.22;                            // a step at ease
+constexpr double kAside = 0.040;                            // of the height, at 90 degrees
+constexpr double kClearance_m = 0.028, kUsualLeg_m = 0.73;  // less of shorter legs
 constexpr double kGround_s = 0.012;  // both feet stand this long between two steps
 constexpr double kBrake_s = 0.18, kStride_m_s = 0.45;
 constexpr double kEasy_m_s2 = 3.15, kMostShort_m = 0.014;
@@ -176,7 +176,8 @@ class Turn final : public Movement {
         pitch.push_back({s.end_s, {}});
         foot.set_pitch(Curve1(std::move(pitch)));
         const Curve1 toes = minimum_jerk({s.begin_s, {bend, bend_rate, 0}}, {}, {s.end_s, {}});
-        const double middle = (s.begin_s + s.end_s) / 2, top = s.to.y + kClearance_m;
+        const double middle = (s.begin_s + s.end_s) / 2,
+                     top = s.to.y + kClearance_m * std::fmin(1, figure_.leg_m / kUsualLeg_m);
         Curve3 ankle{quick(s.begin_s, p.x, v.x, s.end_s, s.to.x),
                      clear_of_floor(figure_, s.side, {s.begin_s, {p.y, v.y, 0}},
                                     {{middle, std::fmax(top, (p.y + s.to.y) / 2)}},

@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include "chain.h"
+#include "puppetri/figure/humanoid.h"
 #include "puppetri/math/rotation.h"
+#include "puppetri/motion/ball_game.h"
 #include "puppetri/motion/gait.h"
 
 using namespace puppetri;
@@ -115,6 +117,45 @@ TEST_CASE("movements that start in the middle of a step put the feet down and st
             CHECK(m.join_pelvis_m_s.value < 0.05);
             CHECK(m.join_foot_m_s.value < 0.2);
             CHECK(m.limit_excess_deg.value < 1e-4);
+        }
+    }
+}
+
+TEST_CASE(
+    "legs of 0.6 m with feet of a quarter of a metre turn to a ball that comes, and wait for it, "
+    "without a jerk [law]") {
+    figure::HumanoidMeasures measures = figure::mannequin_measures(1.7);
+    measures.leg_m = 0.606;
+    measures.ankle_height_m = 0.096;
+    measures.hips_height_m = 0.725;
+    for (figure::HumanoidMeasures::Leg& leg : measures.legs) {
+        leg.thigh_m = 0.298;
+        leg.shank_m = 0.308;
+        const double lower = leg.ball_foot.y + 0.096;
+        leg.toes.y -= lower;
+        leg.heel_foot = {0, -0.096, -0.084};
+        leg.ball_foot.y = leg.toe_tip_foot.y = -0.096;
+        const double ahead = 0.203 - leg.ball_foot.z;
+        leg.ball_foot.z += ahead;
+        leg.toes.z += ahead;
+        leg.toe_tip_foot.z += ahead;
+    }
+    const figure::Figure f = figure::make_humanoid(measures);
+    for (const double degrees : {90.0, -90.0, 20.0, -20.0}) {
+        Chain chain(f, standing(f, {}, 0));
+        chain.run({make_idle(chain.context(), {})}, 0.7);
+        chain.run({make_ready(chain.context(0.5),
+                              {.heading_rad = radians(degrees), .grip = ball_grip(0.11)})
+                       .movement},
+                  2);
+        const Measures m = chain.measured();
+        CAPTURE(degrees);
+        INFO(report(m));
+        CHECK(m.slip_mm.value < 1);
+        CHECK(m.sink_mm.value < 2);
+        CHECK(m.pelvis_acceleration.value <= 4);
+        for (const JointMeasures* j : {&m.knee, &m.hip, &m.ankle, &m.spine, &m.neck, &m.arm}) {
+            CHECK(j->acceleration_rad_s2.value <= 400);
         }
     }
 }
