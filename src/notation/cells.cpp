@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "cell_grid.h"
+#include "ending.h"
 #include "kinds.h"
 #include "line.h"
 #include "literal.h"
@@ -39,6 +40,9 @@ constexpr std::size_t kMostNodes = 2'000'000;  // of the formulas of all cells
 // in a settled order: the order changes nothing, and provers need not try all of them.
 constexpr std::int64_t kFollows = 1'000'000;
 constexpr std::int64_t kOrders = 64;
+// When the figures have followed the last step.
+constexpr std::int64_t kEnds = kFollows - 1;
+constexpr const char* kGenerations = "cells_generations";
 
 constexpr std::string_view kStateForm =
     "NAME \"caption\" shown \"#\" does me.MOVEMENT takes TIME, or NAME continues STATE";
@@ -69,8 +73,13 @@ class Cells {
         };
         each(is_setting, [this](Line& line) { setting(line); });
         each(
-            [](const lang::Property& p) { return !is_setting(p) && !has_arrow(p) && !is_start(p); },
+            [](const lang::Property& p) {
+                return !is_setting(p) && !has_arrow(p) && !is_start(p) && !is_ending(p);
+            },
             [this](Line& line) { state(line); });
+        each(is_ending, [this](Line& line) {
+            read_count(line, "generations", kGenerations, teller_, ending_);
+        });
         if (!good()) {
             return;
         }
@@ -78,6 +87,7 @@ class Cells {
         each(has_arrow, [this](Line& line) { rule(line); });
         each(is_start, [this](Line& line) { start(line); });
         make();
+        make_ways("cells", ending_, kEnds, teller_, body_);
     }
 
  private:
@@ -626,6 +636,10 @@ class Cells {
                     make_path({grid_.name("cell", column, row, span)}, span), next(column, row)));
             }
         }
+        if (ending_) {
+            step.outputs.push_back(
+                make_arc(lang::ArcKind::kGive, make_path(kGenerations, ending_.span)));
+        }
         body_.transitions.push_back(std::move(step));
         const std::vector<lang::Path> who = figures();
         for (std::size_t i = 0; i < who.size(); ++i) {
@@ -717,6 +731,7 @@ class Cells {
     CellGrid grid_;
     int errors_ = 0;
     Expr period_, figures_;
+    Ending ending_;
     lang::Path outside_;
     lang::Span shape_span_{}, wolfram_span_{};
     std::optional<std::int64_t> wolfram_;

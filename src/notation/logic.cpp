@@ -18,6 +18,7 @@
 #include <string>
 #include <utility>
 
+#include "ending.h"
 #include "kinds.h"
 #include "line.h"
 #include "make.h"
@@ -43,6 +44,7 @@ constexpr std::string_view kGateForm =
 constexpr std::string_view kInputForm =
     "input NAME starts yes toggles on EVENT, or toggles at [1, 2] s, or rises on EVENT falls on "
     "EVENT";
+constexpr std::string_view kEndForm = "ends when SIGNAL";
 constexpr std::string_view kClockForm = "clock NAME period TIME high TIME starts yes";
 
 class Logic {
@@ -59,12 +61,14 @@ class Logic {
             const std::string& word = line.name().steps[0].text;
             if (is_gate(p)) {
                 gate(line);
+            } else if (is_ending(p)) {
+                ending(line);
             } else if (word == "input") {
                 input(line);
             } else if (word == "clock") {
                 clock(line);
             } else {
-                teller_.error("syntax", line.span(), "this is no gate, input or clock",
+                teller_.error("syntax", line.span(), "this is no gate, input, clock or end",
                               "write " + std::string(kGateForm));
             }
         }
@@ -72,9 +76,17 @@ class Logic {
             g.formula = plain(g.formula);
         }
         order_gates();
+        ending_.when = plain(ending_.when);
         for (std::size_t i = 0; i < gates_.size(); ++i) {
             make(gates_[i], static_cast<std::int64_t>(i) % kOrders);
         }
+        check_ending();
+        // When gates without delay have followed, before anything else sees the instant.
+        std::int64_t deepest = 0;
+        for (const Gate& g : gates_) {
+            deepest = std::max(deepest, g.depth);
+        }
+        make_ways("logic", ending_, kFollows - deepest - 1, teller_, body_);
     }
 
  private:
@@ -94,6 +106,31 @@ class Logic {
     static bool is_gate(const lang::Property& p) {
         return !p.values.empty() && p.values[0].kind == ExprKind::kSymbol &&
                p.values[0].text == "=";
+    }
+
+    void ending(Line& line) {
+        if (!begin_ending(line, "when", kEndForm, teller_, ending_)) {
+            return;
+        }
+        if (const Expr* e = line.value("a formula of signals")) {
+            ending_.when = *e;
+        }
+        line.finish(kEndForm);
+    }
+
+    // One of its signals may end it; other names are parameters, or wrong.
+    void check_ending() {
+        std::vector<std::string> names;
+        collect(ending_.when, names);
+        for (const std::string& name : names) {
+            const bool parameter =
+                std::any_of(block_.parameters.begin(), block_.parameters.end(),
+                            [&](const lang::Parameter& p) { return p.name.text == name; });
+            if (!parameter && signals_.count(name) == 0) {
+                teller_.error("unknown-name", ending_.when.span, "there is no signal " + name,
+                              "write " + std::string(kEndForm) + " with one of this circuit");
+            }
+        }
     }
 
     static bool is_zero(const Expr& e) {
@@ -529,6 +566,7 @@ class Logic {
     Teller teller_;
     lang::Body& body_;
     std::vector<Gate> gates_;
+    Ending ending_;
     std::set<std::string> signals_;
 };
 

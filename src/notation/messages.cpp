@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "ending.h"
 #include "kinds.h"
 #include "line.h"
 #include "literal.h"
@@ -39,6 +40,10 @@ using lang::Op;
 constexpr std::int64_t kHandled = 4'000'000, kArrives = 3'000'000, kBegins = 2'000'000,
                        kSends = 1'000'000;
 
+// Right after the message has been handled.
+constexpr std::int64_t kEnds = kHandled + 1;
+constexpr const char* kEnding = "messages_ending";
+
 // Variables of the transitions: names that nobody else uses.
 constexpr const char* kKind = "its kind";
 constexpr const char* kTo = "its target";
@@ -48,6 +53,7 @@ constexpr std::string_view kNodeForm = "node NAME \"caption\" takes TIME does MO
 constexpr std::string_view kLinkForm = "link NODE NODE takes TIME [one at a time] [one way]";
 constexpr std::string_view kSendForm =
     "NODE sends MESSAGE to NODE at TIME, every TIME, or on EVENT; to all";
+constexpr std::string_view kEndForm = "ends when NODE has handled MESSAGE";
 constexpr std::string_view kAnswerForm = "NODE answers MESSAGE with MESSAGE";
 
 class Messages {
@@ -77,13 +83,15 @@ class Messages {
         find_ways();
         each("answers", [this](Line& line) { answer(line); });
         each("sends", [this](Line& line) { send(line); });
+        each("ends", [this](Line& line) { ending(line); });
         for (const lang::Property& p : block_.properties) {
             if (kind_of(p).empty()) {
-                teller_.error("syntax", p.span, "this is no node, link, message or sending",
+                teller_.error("syntax", p.span, "this is no node, link, message, sending or end",
                               "write " + std::string(kNodeForm));
             }
         }
         make();
+        make_ways("messages", ending_, kEnds, teller_, body_);
     }
 
  private:
@@ -110,6 +118,9 @@ class Messages {
         const std::string& first = p.name.steps[0].text;
         if (first == "message" || first == "node" || first == "link") {
             return first;
+        }
+        if (is_ending(p)) {
+            return "ends";
         }
         if (!p.values.empty() && p.values[0].kind == ExprKind::kPath &&
             p.values[0].path.steps.size() == 1) {
@@ -297,6 +308,25 @@ class Messages {
             teller_.error("name-twice", line.span(),
                           nodes_[*who].name.text + " answers " + *asked + " already",
                           "keep one of the lines");
+        }
+    }
+
+    void ending(Line& line) {
+        if (!begin_ending(line, "when", kEndForm, teller_, ending_)) {
+            return;
+        }
+        const auto who = find(line.path("the name of a node"));
+        if (!line.word("has") || !line.word("handled")) {
+            teller_.error("syntax", line.span(), "it does not say when this ends",
+                          "write " + std::string(kEndForm));
+            return;
+        }
+        const auto what = kind(line);
+        line.finish(kEndForm);
+        if (who && what) {
+            ending_.given = kEnding;
+            last_node_ = *who;
+            last_kind_ = *what;
         }
     }
 
@@ -491,6 +521,24 @@ class Messages {
             if (!n.raises.empty()) {
                 t.raises.push_back(n.raises);
             }
+            if (ending_ && number == last_node_ && asked == last_kind_) {
+                t.outputs.push_back(
+                    make_arc(lang::ArcKind::kGive, make_path(kEnding, ending_.span)));
+            }
+        }
+        // The message that ends it, where it is not answered.
+        const bool last = ending_ && number == last_node_ && n.answers.count(last_kind_) == 0;
+        if (last) {
+            lang::Transition& t =
+                transition(name + "_gets_" + last_kind_, kHandled - at, ending_.span);
+            t.inputs.push_back(arc(lang::ArcKind::kTake, name + "_handles",
+                                   make_reference(last_kind_, n.span), me, variable(kFrom, n.span),
+                                   n.span));
+            t.outputs.push_back(plain(lang::ArcKind::kGive));
+            t.outputs.push_back(make_arc(lang::ArcKind::kGive, make_path(kEnding, ending_.span)));
+            if (!n.raises.empty()) {
+                t.raises.push_back(n.raises);
+            }
         }
         lang::Transition& gets = transition(name + "_gets", kHandled - at, n.span);
         gets.inputs.push_back(any(lang::ArcKind::kTake, name + "_handles", n.span));
@@ -500,6 +548,11 @@ class Messages {
             gets.guard = make_both(
                 std::move(gets.guard),
                 make_binary(Op::kNotEqual, variable(kKind, n.span), make_reference(asked, n.span)));
+        }
+        if (last) {
+            gets.guard =
+                make_both(std::move(gets.guard), make_binary(Op::kNotEqual, variable(kKind, n.span),
+                                                             make_reference(last_kind_, n.span)));
         }
         if (!n.raises.empty()) {
             gets.raises.push_back(n.raises);
@@ -554,6 +607,9 @@ class Messages {
     std::map<std::string, std::size_t> numbers_;
     std::vector<Way> ways_;
     std::map<std::string, int> sendings_;
+    Ending ending_;
+    std::size_t last_node_ = kNone;  // and the kind of message whose handling ends it
+    std::string last_kind_;
 };
 
 }  // namespace

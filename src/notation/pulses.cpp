@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "ending.h"
 #include "kinds.h"
 #include "line.h"
 #include "literal.h"
@@ -35,6 +36,10 @@ using lang::Op;
 // Beyond this many vertices the growth is not looked at.
 constexpr std::size_t kMostLookedAt = 80;
 constexpr int kSquarings = 40;
+
+// Right after the step, before what scenes write sees it.
+constexpr std::int64_t kEnds = 999'999;
+constexpr const char* kSteps = "pulses_steps";
 
 constexpr std::string_view kVertexForm =
     "NAME \"caption\" starts VALUE pulse PULSE whole LOW .. HIGH";
@@ -139,8 +144,13 @@ class Pulses {
             }
             line.finish("every TIME");
         });
-        each([](const lang::Property& p) { return !is_period(p) && !has_arrow(p) && !is_given(p); },
-             [this](Line& line) { vertex(line); });
+        each(is_ending,
+             [this](Line& line) { read_count(line, "steps", kSteps, teller_, ending_); });
+        each(
+            [](const lang::Property& p) {
+                return !is_period(p) && !has_arrow(p) && !is_given(p) && !is_ending(p);
+            },
+            [this](Line& line) { vertex(line); });
         each(has_arrow, [this](Line& line) { arc(line); });
         each(is_given, [this](Line& line) { given(line); });
         if (!period_) {
@@ -154,6 +164,7 @@ class Pulses {
             return;
         }
         make();
+        make_ways("pulses", ending_, kEnds, teller_, body_);
         warn_of_growth();
     }
 
@@ -332,6 +343,9 @@ class Pulses {
                 make_assignment(make_path(name, v.span),
                                 make_binary(Op::kAdd, make_reference(name, v.span), pulse[i])));
         }
+        if (ending_) {
+            step.outputs.push_back(make_arc(lang::ArcKind::kGive, make_path(kSteps, ending_.span)));
+        }
         body_.transitions.push_back(std::move(step));
     }
 
@@ -375,6 +389,7 @@ class Pulses {
     Teller teller_;
     lang::Body& body_;
     Expr period_;
+    Ending ending_;
     std::vector<Vertex> vertices_;
     std::map<std::string, std::size_t> numbers_;
     std::map<std::string, int> given_;

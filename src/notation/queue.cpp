@@ -26,6 +26,9 @@ void lower_queue(const lang::Block& block, const lang::File& file, Lowered& out)
         return;
     }
     QueueBuilder(model, teller, out.net.body).build();
+    // Right after the last one has left: above all that a queue does.
+    constexpr std::int64_t kLast = 999'999;
+    make_ways("queue", model.ending, kLast, teller, out.net.body);
 }
 
 }  // namespace puppetri::notation

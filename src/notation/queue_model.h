@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ending.h"
 #include "line.h"
 #include "puppetri/lang/syntax.h"
 
@@ -90,6 +91,7 @@ struct QueueModel {
     std::optional<lang::Name> inside;  // the place that counts customers in the network
     std::vector<QueueNode> nodes;
     std::vector<Route> routes;
+    Ending ending;  // counts those who leave by sinks
 
     std::vector<const Route*> routes_of(std::size_t node, RouteOn on) const {
         std::vector<const Route*> out;

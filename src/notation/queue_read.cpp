@@ -13,7 +13,7 @@ using lang::Expr;
 using lang::ExprKind;
 
 constexpr std::string_view kLineForms =
-    "customer, data, inside, source, station, delay, pool, sink, or FROM -> TO";
+    "customer, data, inside, source, station, delay, pool, sink, ends, or FROM -> TO";
 constexpr std::string_view kSourceForm =
     "source NAME every TIME first TIME batch NUMBER from POOL closes TIME repeats TIME { at TIME "
     "every TIME }";
@@ -72,7 +72,10 @@ class Reader {
                                                               {"pool", NodeKind::kPool},
                                                               {"sink", NodeKind::kSink}};
         const auto kind = kinds.find(word);
-        if (kind != kinds.end()) {
+        if (is_ending(p)) {
+            Line line(p, teller_);
+            read_count(line, "customers", "queue_left", teller_, model_.ending);
+        } else if (kind != kinds.end()) {
             node(p, kind->second);
         } else if (word == "customer") {
             customer(p);

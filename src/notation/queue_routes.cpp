@@ -86,6 +86,8 @@ std::vector<Way> QueueBuilder::ways_into(std::size_t index, const Values& values
     if (node.kind == NodeKind::kSink || node.kind == NodeKind::kPool) {
         if (node.kind == NodeKind::kPool) {
             enter.gives.push_back(give_customer(node.text(), values, span, count));
+        } else if (model_.ending) {
+            enter.gives.push_back(take(ArcKind::kGive, model_.ending.counts, span, count));
         }
         enter.leaves = true;
         return {enter};
