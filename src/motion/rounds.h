@@ -18,7 +18,10 @@ class Rounds {
         const double given_s = duration.seconds();
         if (given_s > 0 && end_s_ > 0) {
             count_ = loops_ ? clamp(std::nearbyint(given_s / end_s_), 1, 1e6) : 1;
-            pace_ = count_ * end_s_ / given_s;
+            // What goes on anyway may be cut anywhere: no figure hurries through a round for it.
+            // Events that a net may wait for are all told.
+            const bool cut = loops_ && spec.events.empty() && given_s < end_s_ / 2;
+            pace_ = cut ? 1 : count_ * end_s_ / given_s;
         }
         if (!spec.stretches) {
             pace_ = std::fmax(pace_, 1);

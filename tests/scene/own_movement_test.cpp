@@ -465,6 +465,30 @@ TEST_CASE("what loops goes round in a place that gives it more time [law]") {
     CHECK(nods == 5);
 }
 
+TEST_CASE(
+    "what loops does not hurry through a round in a place that gives it less than half [law]") {
+    const auto flex_at = [](const char* takes, const char* raises, double t_s) {
+        MemoryFiles files;
+        files.add("scene.pup",
+                  std::string("language 1\nscene \"s\"\nuntil 8 s\ncast { ana: mannequin }\n"
+                              "movement m(me: actor) {\n takes 1 s\n loop\n"
+                              " me.head.flex = 15 deg * sin(2*pi*t/1 s)\n") +
+                      raises + "}\nplace a does ana.m() takes " + takes + " tokens 1\nend { a }\n");
+        const Scene scene = must(load(files, "scene.pup"));
+        return dof_value(*performed(scene).performance, "head.flex", t_s);
+    };
+    // As it was in a place that gives it all its time, while it joins too.
+    for (double t = 0.02; t < 0.395; t += 0.05) {
+        CHECK(flex_at("0.4 s", "", t) == doctest::Approx(flex_at("1 s", "", t)).epsilon(1e-6));
+    }
+    // From half a round on it is a whole one, and one that raises events raises all of them.
+    constexpr double kSettled_s = 0.35;
+    CHECK(flex_at("0.6 s", "", kSettled_s) ==
+          doctest::Approx(radians(15) * puppetri::sin(2 * kPi * kSettled_s / 0.6)).epsilon(1e-5));
+    CHECK(flex_at("0.4 s", "at 0.9 s raises nodded\n", kSettled_s) ==
+          doctest::Approx(radians(15) * puppetri::sin(2 * kPi * kSettled_s / 0.4)).epsilon(1e-5));
+}
+
 TEST_CASE("wrong keyframes are told with place and remedy [hostile]") {
     const auto keys = [](const char* body) {
         return std::string("keyframes m(me: actor) {\n takes 1 s\n") + body + "\n}";

@@ -25,15 +25,6 @@ constexpr Allowed kAllowed[] = {
     {"18_chart/guard.pup", "rui", "knee rad/s2", 1200},
     {"18_chart/guard.pup", "rui", "hip rad/s2", 600},
     {"18_chart/guard.pup", "rui", "ankle rad/s2", 600},
-    // Exponential times: some bows get a tenth of the time that they need.
-    {"13_moods/workshop.pup", "", "pelvis m/s2", 130},
-    {"13_moods/workshop.pup", "", "hip rad/s", 16},
-    {"13_moods/workshop.pup", "", "hip rad/s2", 700},
-    {"13_moods/workshop.pup", "", "spine rad/s", 4},
-    // Who goes somewhere turns in its first step.
-    {"11_barber_shop/shop.pup", "", "pelvis m/s2", 5},
-    {"11_barber_shop/events.pup", "", "pelvis m/s2", 5},
-    {"13_moods/crossing.pup", "", "pelvis m/s2", 5},
     // Keyframes of a file as they are.
     {"09_philosophers/absolute.pup", "man1", "arm rad/s2", 1700},
 };

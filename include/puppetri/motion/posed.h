@@ -42,7 +42,8 @@ struct PosedSpec {
     std::string name;  // of the movement, for warnings
     double duration_s = 1;
     // Goes on from its beginning after its end, its travel too. A place that gives it more time
-    // gets as many whole rounds as come nearest to its own pace.
+    // gets as many whole rounds as come nearest to its own pace; one that gives it less than half a
+    // round the beginning of one, or all of it if it has events.
     bool loops = false;
     std::vector<std::string> dofs;    // "head.flex": names of the figure's DOFs
     std::vector<std::string> joints;  // whole rotations of joints, by name in the skeleton
