@@ -50,8 +50,6 @@ constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot canno
 constexpr double kLessPerDuty = 1.15;    // for each duty above 0.62: both feet are down that long
 constexpr double kRollFlat_s = 0.2;      // of the foot that just landed
 constexpr double kHalt_m_s2 = 3.65, kShortestHalt_s = 0.15;  // of a step whose next one is late
-constexpr double kLow_m =
-    0.005;  // a step that finds the hips lower than that lets them rise slowly
 constexpr double kCatch_s = 0.16;  // to put down a foot that should already stand
 
 class Planner {
@@ -546,20 +544,16 @@ class Planner {
             }
         }
         constexpr int kBands = 20;
-        // Who is found low (a step that came to rest half way) comes up in its time.
-        const double low = std::fmax(0, band(0).lowest - now.position.y - kLow_m);
         for (int i = 1; i <= kBands; ++i) {
             height.bands.push_back(band(T * i / kBands));
-            HeightBand& b = height.bands.back();
-            const double lower = low * (1 - smooth_rise(b.t_s, T));
-            b.lowest -= lower;
-            b.highest -= lower;
         }
         for (const double t : {plan_.lift_s, plan_.strike_s}) {
             if (t > 0 && t < T) {
                 height.bands.push_back(band(t));
             }
         }
+        // Who is found low (a step that came to rest half way) comes up in its time.
+        rise_slowly(height, band(0).lowest);
         // The double support goes on in the next step: what this one leaves has to suit both legs
         // until the hind foot is off.
         for (int i = 1; i <= 3 && !last_ && half_ > 0; ++i) {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "living.h"
 #include "puppetri/base/require.h"
 #include "puppetri/math/rotation.h"
 
@@ -113,6 +114,19 @@ double longest_way_to_rest(double speed, double a, double T) {
 // Unknown: the heights at a quarter, a half, three quarters and the end, and the velocity there;
 // the curve is linear in them. Repeated least squares over the bands that are left, each weighted
 // by its kind, plus a little of the acceleration.
+void rise_slowly(HeightPlan& plan, double lowest_now) {
+    constexpr double kNothing_m = 0.005;
+    const double low = std::fmax(0, lowest_now - plan.from.position - kNothing_m),
+                 part = std::fmin(1, low / kNothing_m);
+    for (HeightBand& band : plan.bands) {
+        const double above = lerp(band.lowest, band.highest, band.wanted) - plan.from.position;
+        const double lower =
+            std::fmax(low, part * above) * (1 - smooth_rise(band.t_s, 0.8 * plan.duration_s));
+        band.lowest -= lower;
+        band.highest -= lower;
+    }
+}
+
 Curve1 plan_height(const HeightPlan& plan) {
     constexpr std::size_t kUnknown = 5;
     const double T = plan.duration_s;

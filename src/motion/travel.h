@@ -32,6 +32,9 @@ struct HeightPlan {
     Motion1 to;                     // velocity and acceleration at the end count in any case
     std::vector<HeightBand> bands;  // may reach past the end: the curve goes on there as it is
 };
+// Who is found lower than `lowest_now`, the lower end of the band where it stands, comes up within
+// the plan's duration instead of at once: the bands begin where it is. Nothing for less than 5 mm.
+void rise_slowly(HeightPlan& plan, double lowest_now);
 // A smooth curve through the bands, as far as there is one: otherwise the sum of squares by which
 // it leaves them is least, leaving upwards (a leg too short) counting much more than downwards.
 Curve1 plan_height(const HeightPlan& plan);

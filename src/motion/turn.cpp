@@ -230,8 +230,7 @@ class Turn final : public Movement {
         height.duration_s = T_;
         height.to = {home.position_world.y - dot(rest_, rest_) / (2 * figure_.leg_m), 0, 0};
         constexpr int kBands = 16;
-        for (int i = 1; i <= kBands; ++i) {
-            const double t = T_ * i / kBands;
+        const auto band_at = [&](double t) {
             HeightBand band{t, 0, 1e9, 1e9, 0.5};
             for (int side = 0; side < 2; ++side) {
                 const LegControl leg = feet_[side].at(t);
@@ -246,12 +245,14 @@ class Turn final : public Movement {
                 };
                 band.highest = std::fmin(band.highest, reach(kLongest));
             }
-            // A figure that crouches when the turn begins comes up by and by.
-            const double low = 0.012 * figure_.height_m, rest = (1 - t / T_) * (1 - t / T_);
-            band.lowest = band.highest - low - std::fmax(0, band.highest - low - p.y) * rest;
+            band.lowest = band.highest - 0.012 * figure_.height_m;
             band.wanted = 0.4;
-            height.bands.push_back(band);
+            return band;
+        };
+        for (int i = 1; i <= kBands; ++i) {
+            height.bands.push_back(band_at(T_ * i / kBands));
         }
+        rise_slowly(height, band_at(0).lowest);
         pelvis_.y = plan_height(height);
     }
 

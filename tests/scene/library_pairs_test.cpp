@@ -194,6 +194,14 @@ void check_table(const test::Measures& m, const std::string& what, bool runs) {
     slow(m.ankle, runs ? 14 : 8, runs ? 1200 : 400, "ankle");
     slow(m.spine, runs ? 5 : 3, 400, "spine");
     slow(m.arm, 20, 1500, "arm");
+    slow(m.neck, 6, runs ? 1200 : 400, "neck");
+    // Of throws and catches the table asks nothing of the pelvis.
+    if (!runs && what.find("throw") == std::string::npos &&
+        what.find("catch") == std::string::npos) {
+        CHECK_MESSAGE(m.pelvis_acceleration.value <= 4,
+                      what << ": pelvis " << m.pelvis_acceleration.value << " m/s^2 at "
+                           << m.pelvis_acceleration.at_s);
+    }
 }
 
 bool told(const Performed& p, const char* code) {
