@@ -69,6 +69,12 @@ class Ways {
                     make_arc(ArcKind::kTakeAllNow, make_path({p.name}, ending_.span)));
             }
         }
+        for (const InnerPlace& inner : ending_.within) {
+            if (inner.begins) {
+                starts_.outputs.push_back(make_arc(ArcKind::kGive, inner.place));
+            }
+            ends_.inputs.push_back(make_arc(ArcKind::kTakeAllNow, inner.place));
+        }
         for (const lang::Data& d : body_.data) {
             Expr value = initial_of(d);
             if (!value) {

@@ -5,19 +5,27 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "line.h"
 #include "puppetri/lang/syntax.h"
 
 namespace puppetri::notation {
 
+// A place of a net within this one.
+struct InnerPlace {
+    lang::Path place;
+    bool begins = false;  // it has a token when the net begins
+};
+
 struct Ending {
-    lang::Span span;     // of the line
-    bool said = false;   // there is such a line: else the block goes on for ever
-    std::string counts;  // the place whose tokens are counted; empty: none
-    lang::Expr count;    // so many of them
-    lang::Expr when;     // and this holds
-    std::string given;   // the place whose token ends it; empty: none
+    lang::Span span;                 // of the line
+    bool said = false;               // there is such a line: else the block goes on for ever
+    std::string counts;              // the place whose tokens are counted; empty: none
+    lang::Expr count;                // so many of them
+    lang::Expr when;                 // and this holds
+    std::string given;               // the place whose token ends it; empty: none
+    std::vector<InnerPlace> within;  // what else is begun and called off; nothing is in it before
 
     explicit operator bool() const { return said; }
 };

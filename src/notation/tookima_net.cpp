@@ -12,6 +12,7 @@
 #include <map>
 #include <set>
 
+#include "ending.h"
 #include "foreign_formats.h"
 #include "make.h"
 #include "puppetri/base/text.h"
@@ -24,6 +25,10 @@ using namespace tookima;
 
 constexpr const char* kNone = "(none)";  // the message that is none
 constexpr const char* kMessages = "Message";
+constexpr const char* kBegun = "tokens at first";  // parameter: 0 where the script begins later
+// The script that ends with its interval: right after the last instant.
+constexpr const char* kOnce = "_once";
+constexpr std::int64_t kEnds = 999'999;
 
 std::string heard(const std::string& channel) { return channel + " heard"; }
 std::string said(const std::string& channel) { return channel + " said"; }
@@ -56,8 +61,16 @@ class ScriptNet {
             write_script(out_.file.body);
             return;
         }
+        out_.file.body.nets.push_back(script_net(false));
+        out_.file.body.nets.push_back(script_net(true));
+    }
+
+ private:
+    // `once`: for places that run it.
+    lang::Net script_net(bool once) {
         lang::Net net;
-        net.name = make_name(std::string(stem_of(out_.file.filename)), {0, 1, file_});
+        net.name = make_name(std::string(stem_of(out_.file.filename)) + (once ? kOnce : ""),
+                             {0, 1, file_});
         net.span = whole_;
         for (const Machine& m : script_.machines) {
             if (!calls_of(m).empty()) {
@@ -70,11 +83,45 @@ class ScriptNet {
             net.parameters.back().default_value =
                 make_call(make_path("half_step", f.span), {}, f.span);
         }
+        once_ = once;
+        occurring_.clear();
         write_script(net.body);
-        out_.file.body.nets.push_back(std::move(net));
+        if (once) {
+            end_script(net.body);
+        }
+        return net;
     }
 
- private:
+    // No token rests, and no instant is to come.
+    void end_script(lang::Body& body) {
+        const lang::Span at = script_.sampled;
+        Ending ending;
+        ending.span = at;
+        ending.said = true;
+        const auto has = [&](const char* place, std::int64_t count) {
+            return make_binary(lang::Op::kEqual, make_count(make_path(place, at)),
+                               make_number(Rational{count}, at));
+        };
+        ending.when = make_both(has("rest", 1), has("instants", 0));
+        for (const Machine& m : script_.machines) {
+            const auto add = [&](const std::string& place, bool begins) {
+                ending.within.push_back(
+                    {make_path({make_name(m.name.text, at), make_name(place, at)}, at), begins});
+            };
+            for (const std::string& state : states_of(m)) {
+                add(state, state == m.initial.text);
+            }
+            for (const Word& f : calls_of(m)) {
+                add(f.text, false);
+            }
+        }
+        Lowered lowered;
+        Teller teller("script", out_.file, lowered);
+        make_ways("script", ending, kEnds, teller, body);
+        out_.diagnostics.insert(out_.diagnostics.end(), lowered.diagnostics.begin(),
+                                lowered.diagnostics.end());
+    }
+
     std::uint32_t size() const { return static_cast<std::uint32_t>(out_.file.text.size()); }
 
     void warn(std::string code, lang::Span where, const std::string& element, std::string message,
@@ -402,16 +449,14 @@ class ScriptNet {
                 add_parameter(net, {moves(f.text), f.span}, "movement");
             }
         }
-        std::set<std::string> states = {m.initial.text};
-        for (const Action& a : m.actions) {
-            states.insert(a.from.text);
-            states.insert(a.to.text);
-        }
-        for (const std::string& state : states) {
+        add_parameter(net, {kBegun, m.name.span}, "int");
+        net.parameters.back().default_value = make_number(Rational{1}, m.name.span);
+        for (const std::string& state : states_of(m)) {
             lang::Place place = make_place(make_name(state, first_mention(m, state)));
             place.is_public = true;
             if (state == m.initial.text) {
                 give_token(place);
+                place.tokens.back().count = make_reference(kBegun, m.name.span);
             }
             net.body.places.push_back(std::move(place));
         }
@@ -433,6 +478,15 @@ class ScriptNet {
         pass.is_public = true;
         net.body.transitions.push_back(std::move(pass));
         return net;
+    }
+
+    static std::set<std::string> states_of(const Machine& m) {
+        std::set<std::string> states = {m.initial.text};
+        for (const Action& a : m.actions) {
+            states.insert(a.from.text);
+            states.insert(a.to.text);
+        }
+        return states;
     }
 
     static lang::Span first_mention(const Machine& m, const std::string& state) {
@@ -548,10 +602,12 @@ class ScriptNet {
         rest.is_public = true;
         give_token(rest);
         body.places.push_back(std::move(rest));
-        lang::End end;
-        end.formulas.push_back(make_reference("rest", at));
-        end.span = at;
-        body.ends.push_back(std::move(end));
+        if (!once_) {
+            lang::End end;
+            end.formulas.push_back(make_reference("rest", at));
+            end.span = at;
+            body.ends.push_back(std::move(end));
+        }
         const std::vector<Machine>& machines = script_.machines;
         lang::Transition sample =
             make_transition(make_name("sample", at), {make_path("rest", at)},
@@ -565,6 +621,7 @@ class ScriptNet {
                 d.name = make_name(hears ? heard(channel.text) : said(channel.text), channel.span);
                 d.is_public = true;
                 d.type = make_reference(kMessages, channel.span);
+                d.initial = make_reference(kNone, channel.span);
                 d.span = channel.span;
                 body.data.push_back(std::move(d));
             }
@@ -627,6 +684,9 @@ class ScriptNet {
                 give(f.text, f.span);
             }
         }
+        if (once_) {
+            use.args.push_back({make_name(kBegun, at), make_number(Rational{0}, at)});
+        }
         body.uses.push_back(std::move(use));
     }
 
@@ -637,6 +697,7 @@ class ScriptNet {
     std::vector<Word> channels_, functions_;  // also those that were not declared
     std::map<std::string, int> names_;
     std::set<std::string> occurring_;
+    bool once_ = false;  // the script that is written ends with its interval
 };
 
 }  // namespace

@@ -30,14 +30,26 @@ Term Elaboration::resolve(const lang::Path& path, const Scope& scope) {
     if (path.empty()) {
         return Nothing{};
     }
-    std::optional<Term> found = resolve_first(path.steps[0], scope);
+    std::optional<Term> found;
+    const Instance& own = instances_[scope.instance];
+    if (path.steps.size() > 1 && own.net != nullptr) {
+        // What goes on is about the member that hides a parameter of the same name.
+        for (const lang::Parameter& p : own.net->parameters) {
+            const auto member = own.members.find(path.steps[0].text);
+            if (p.hidden && p.name.text == path.steps[0].text && member != own.members.end()) {
+                found = member_term(member->second);
+            }
+        }
+    }
     if (!found) {
-        const Instance& instance = instances_[scope.instance];
+        found = resolve_first(path.steps[0], scope);
+    }
+    if (!found) {
         const std::string& name = path.steps[0].text;
-        if (instance.net != nullptr && instances_[0].net == nullptr &&
+        if (own.net != nullptr && instances_[0].net == nullptr &&
             instances_[0].members.count(name) != 0) {
             error("unknown-name", path.steps[0].span,
-                  "net " + instance.net->name.text + " does not know " + name +
+                  "net " + own.net->name.text + " does not know " + name +
                       ", which belongs to the scene",
                   "give it to the net as a parameter");
         } else {

@@ -149,6 +149,132 @@ END_SIMULATION
     CHECK(changes == std::vector<std::string>{"4 s l.LIGHT.off_to_on", "6 s l.LIGHT.on_to_off"});
 }
 
+// Without its turns; in a place `s`, or a machine's state `m.s`, that runs the script three times.
+std::vector<std::string> log_of_runs(const scene::Scene& scene) {
+    std::vector<std::string> out;
+    for (const std::string& line : log_of(scene, 37)) {
+        if (line.find(".sample") == line.npos && line.find(".waits") == line.npos) {
+            out.push_back(line);
+        }
+    }
+    return out;
+}
+
+TEST_CASE("a script is run by a place or by a state of a machine, again and again [unit]") {
+    // Steps that take an instant, without a movement; checked by hand above with one.
+    std::string steps = kLegs;
+    for (const auto& [old, now] : {std::pair{"move_left_leg(), ", "NO_TASK, "},
+                                   {"move_right_leg(), ", "NO_TASK, "},
+                                   {"\"TL\", BL,", "\"TL\", TRUE,"},
+                                   {"\"TR\", BR,", "\"TR\", TRUE,"}}) {
+        const std::size_t at = steps.find(old);
+        REQUIRE(at != std::string::npos);
+        steps.replace(at, std::string(old).size(), now);
+    }
+    REQUIRE(actions_of(steps) == actions_of(kLegs));
+    const std::vector<std::string> alone = actions_of(kLegs);
+    for (const bool in_machine : {false, true}) {
+        for (const bool moves : {false, true}) {
+            CAPTURE(in_machine);
+            CAPTURE(moves);
+            const std::string runs =
+                moves ? "runs script_once(LEFT_LEG: ana.left_leg, RIGHT_LEG: ana.right_leg)"
+                      : "runs script_once()";
+            scene::MemoryFiles files = file_of(moves ? kLegs : steps);
+            files.add("scene.pup",
+                      "language 1\nscene \"s\"\ncast { ana: mannequin }\n"
+                      "import script_once from \"script.tookima\"\n" +
+                          (in_machine
+                               ? "use m\nmachine m {\n  state s starts " + runs +
+                                     "\n  state t takes 1.5 s\n  go: s -> t\n  back: t -> s\n}\n"
+                               : "place s " + runs +
+                                     " tokens 1\nplace t takes 1.5 s\ngo: s -> t\nback: t -> s\n"));
+            Checked<scene::Scene> loaded = scene::load(files, "scene.pup");
+            if (!loaded) {
+                FAIL(told(loaded.error()));
+            }
+            const std::string within = in_machine ? "m.s." : "s.";
+            if (moves) {
+                // Nobody performs movements here: its beginning is played.
+                CHECK(log_of(*loaded, 0.5).front() == "0 s " + within + "script_starts");
+                run::Player player(loaded->net);
+                player.run({.until = {kTicksPerSecond / 2}});
+                for (const char* place : {"CTRL.L2", "LEFT_LEG.SL", "RIGHT_LEG.SR", "rest"}) {
+                    CHECK(player.tokens(loaded->net.find_place(within + place)) == 1);
+                }
+                CHECK(player.tokens(loaded->net.find_place(within + "instants")) == 11);
+                continue;
+            }
+            std::vector<std::string> wanted;
+            for (int round = 0; round < 3; ++round) {
+                const auto add = [&](double after, const std::string& what) {
+                    char time[40];
+                    std::snprintf(time, sizeof time, "%.9g s ", 12.5 * round + after);
+                    wanted.push_back(time + what);
+                };
+                if (round > 0) {
+                    add(0, in_machine ? "m.back" : "back");
+                }
+                add(0, within + "script_starts");
+                for (const std::string& line : alone) {
+                    add(std::strtod(line.c_str(), nullptr),
+                        within + line.substr(line.find(" s ") + 3));
+                }
+                add(11, within + "script_ends");
+                add(11, in_machine ? "m.go" : "go");
+            }
+            CHECK(log_of_runs(*loaded) == wanted);
+            // What was said last is not heard when it begins again, and no token is left.
+            run::Player player(loaded->net);
+            player.run({.until = {12 * kTicksPerSecond}});
+            const auto said = loaded->net.find_datum(within + "ML said");
+            CHECK(player.datum(said) != 0);
+            for (std::uint32_t p = 0; p < loaded->net.place_count(); ++p) {
+                const net::PlaceIndex place{p};
+                if (loaded->net.place(place).path.substr(0, within.size()) == within) {
+                    CHECK(player.tokens(place) == 0);
+                }
+            }
+            player.run({.until = {13 * kTicksPerSecond}});
+            CHECK(player.datum(said) == 0);
+        }
+    }
+}
+
+TEST_CASE("what happens while nobody runs a script is not heard by it [unit]") {
+    scene::MemoryFiles files;
+    files.add("light.tookima", R"(DEF_ESM(LIGHT, "off")
+DEF_EVENT(BUTTON)
+TIME_INTERVAL(0., 4.)
+SAMPLES(3)
+START_SIMULATION
+BEGIN_ESM(LIGHT)
+EVENT(BUTTON)
+ACTION(LIGHT, "off", BUTTON, NO_TASK, "on")
+END_ESM
+END_SIMULATION
+)");
+    files.add("scene.pup",
+              "language 1\nscene \"s\"\nimport light_once from \"light.tookima\"\n"
+              "place l runs light_once() tokens 1\nplace q takes 2 s\ngo: l -> q\nback: q -> l\n"
+              "event push at 1 s, 5 s, 11 s\npushes: -> on push raises l.BUTTON\n");
+    Checked<scene::Scene> loaded = scene::load(files, "scene.pup");
+    if (!loaded) {
+        FAIL(told(loaded.error()));
+    }
+    std::vector<std::string> changes;
+    for (const std::string& line : log_of(*loaded, 16)) {
+        if (line.find("LIGHT.o") != std::string::npos || line.find("script_") != line.npos) {
+            changes.push_back(line);
+        }
+    }
+    // Off again when it begins; pushed at 1 s, in vain at 11 s, when it has ended, and at 5 s.
+    CHECK(changes == std::vector<std::string>{"0 s l.script_starts", "2 s l.LIGHT.off_to_on",
+                                              "4 s l.script_ends", "6 s l.script_starts",
+                                              "10 s l.script_ends", "12 s l.script_starts",
+                                              "16 s l.script_ends"});
+}
+
 TEST_CASE("slips of printed scripts are told with line and remedy, and the rest loads [unit]") {
     const auto log = actions_of(kLegs);
     const auto loads = [&](const std::string& text) { return actions_of(text) == log; };
