@@ -227,6 +227,14 @@ void Elaboration::complete_refinements() {
         About about(*this, "place " + place.path, place.node->span);
         const lang::Net& inner = *instances_[place.runs].net;
         const std::string net = (inner.is_machine ? "machine " : "net ") + inner.name.text;
+        const lang::Block* block = library_.block_of(&inner);
+        if (block != nullptr && (out.start.empty() || out.finish.empty())) {
+            const std::string& kind = block->kind.text;
+            error("no-finish", place.node->runs.span,
+                  kind + " " + inner.name.text + " goes on for ever, or has several ways in or out",
+                  "let it end, as docs/notations/" + kind + ".md says, and begin and end one way");
+            continue;
+        }
         if (out.start.empty()) {
             error("no-start", place.node->runs.span, net + " has no way in",
                   inner.is_machine ? "write `starts` behind the state where it begins"

@@ -246,6 +246,10 @@ TEST_CASE("wrong lines about the end are told where they stand [unit]") {
     CHECK(codes(pulses + "  ends after 2\n}\n") == Codes{{8, "syntax"}});
     CHECK(codes(pulses + "  ends\n}\n") == Codes{{8, "syntax"}});
     CHECK(codes(pulses + "  ends after 1 step\n}\n").empty());
+    const Diagnostics endless = defects_of("place p runs net() tokens 1\n" + pulses + "}\n");
+    REQUIRE(endless.size() == 1);
+    CHECK(endless[0].code == "no-finish");
+    CHECK(endless[0].where.line == 3);
     const std::string logic = "logic net {\n  input a\n  b = not a delay 1 s\n";
     CHECK(codes(logic + "  ends when c\n}\n") == Codes{{7, "unknown-name"}});
     CHECK(codes(logic + "  ends when a\n  ends when b\n}\n") == Codes{{8, "name-twice"}});
