@@ -145,7 +145,7 @@ TEST_CASE(
         Chain chain(f, standing(f, {}, 0));
         chain.run({make_idle(chain.context(), {})}, 0.7);
         chain.run({make_ready(chain.context(0.5),
-                              {.heading_rad = radians(degrees), .grip = ball_grip(0.11)})
+                              {.grip = ball_grip(0.11), .heading_rad = radians(degrees)})
                        .movement},
                   2);
         const Measures m = chain.measured();
