@@ -20,6 +20,8 @@ namespace {
 constexpr double kNear_m = 0.01;             // a way that is not worth a step
 constexpr double kStraight = radians(0.05);  // an angle that is not worth one
 constexpr int kRounds = 12;
+// Longer strokes, of the tall, take their time: in the usual one they would stop too sharply.
+constexpr double kQuickStroke_m = 0.6;
 
 // Moves the context to the end of a movement that starts from it: the start of the next.
 void advance_over(MotionContext& context, const Movement& movement) {
@@ -72,6 +74,7 @@ class Way {
         length_m = std::fmin(length_m, kFarthestWay_m);
         steps_ = length_m > 0 ? static_cast<int>(std::ceil(length_m / most - 1e-6)) : 0;
         stroke_m_ = steps_ > 0 ? length_m / steps_ : 0;
+        step_s_ *= std::fmax(1, stroke_m_ / kQuickStroke_m);
     }
 
     // The parts with the durations that they would have alone; `spec.duration_s` of none.
@@ -79,7 +82,7 @@ class Way {
         const double last = spec_.heading_rad.value_or(heading_);
         const double first_s = turn_s(turn_between(from_heading_, heading_)),
                      last_s = steps_ > 0 ? turn_s(turn_between(heading_, last)) : 0;
-        const double step_s = StepSpec{}.duration_s, walk_s = steps_ * step_s;
+        const double walk_s = steps_ * step_s_;
         const bool given = context.duration.ticks > 0;
         const double own_s = first_s + walk_s + last_s;
         const double share = given && own_s > 0 ? context.duration.seconds() / own_s : 1;
@@ -104,7 +107,9 @@ class Way {
             add(
                 walk_s,
                 [&] {
-                    return make_walk(now, {.stroke_m = stroke_m_, .limbs = spec_.limbs}, steps_);
+                    return make_walk(
+                        now, {.stroke_m = stroke_m_, .duration_s = step_s_, .limbs = spec_.limbs},
+                        steps_);
                 },
                 last_s == 0);
         }
@@ -165,7 +170,7 @@ class Way {
     Vec3 from_, goal_;
     double from_heading_ = 0, heading_ = 0;
     int steps_ = 0;
-    double stroke_m_ = 0;
+    double stroke_m_ = 0, step_s_ = StepSpec{}.duration_s;
 };
 
 }  // namespace

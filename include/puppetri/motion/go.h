@@ -25,10 +25,10 @@ struct GoSpec {
 // The longest way that is gone.
 inline constexpr double kFarthestWay_m = 200;
 
-// Turns to the place, walks there in steps of one length, and turns to the heading. What turning
-// shifts the feet aside is allowed for: it ends within a few millimetres of the place.
-// A prescribed duration is shared by all parts.
-// Cost  of preparing: about two milliseconds, and a third of one for every step.
+// Turns to the place, walks there in steps of one length (those beyond 0.6 m take longer), and
+// turns to the heading. What turning shifts the feet aside is allowed for: it ends within a few
+// millimetres of the place. A prescribed duration is shared by all parts. Cost  of preparing: about
+// two milliseconds, and a third of one for every step.
 MovementPtr make_go(const MotionContext& context, const GoSpec& spec);
 
 }  // namespace puppetri::motion
