@@ -48,9 +48,22 @@ constexpr double kMostLag_m = 0.09, kMostSlowLead_m = 0.04, kMostRestLag_m = 0.0
 constexpr double kUsualLever = 0.152, kUsualHeel = 0.072;
 constexpr double kLongestStroke = 0.87;  // of the leg; beyond it one foot cannot stay down. Less
 constexpr double kLessPerDuty = 1.15;    // for each duty above 0.62: both feet are down that long
-constexpr double kRollFlat_s = 0.2;      // of the foot that just landed
+// Long feet on short legs: a foot behind is held flat, since its lever would lift the ankle too
+// far, and so flat that the ankle of a longer stroke would leave its limits. In parts of the leg
+// over the lever in parts of the leg, measured at a robot and at mannequins and rigs with longer
+// feet.
+constexpr double kLongLever = 0.35, kLessPerLever = 4.0;
+constexpr double kLongerLever = 0.433, kLongerStroke = 0.58, kLessPerLongerLever = 1.43;
+constexpr double kShortestMost = 0.15;
+constexpr double kLongFootClearance_m = 0.013, kLongFoot = 0.54;  // reached at that lever
+constexpr double kRollFlat_s = 0.2;                               // of the foot that just landed
 constexpr double kHalt_m_s2 = 3.65, kShortestHalt_s = 0.15;  // of a step whose next one is late
 constexpr double kCatch_s = 0.16;  // to put down a foot that should already stand
+
+// The longer of the levers from the ankles to where the feet roll, in parts of the leg.
+double lever_of(const figure::Figure& figure) {
+    return std::fmax(figure.legs[0].ball_foot.z, figure.legs[1].ball_foot.z) / figure.leg_m;
+}
 
 class Planner {
  public:
@@ -67,6 +80,8 @@ class Planner {
         last_ = spec.kind == StepKind::kLastHalf;
         n_ = whole_ ? plan_.duration_s : 2 * plan_.duration_s;
         x_ = std::fmin(spec.stroke_m, longest_stroke_m(f_, spec.duty_factor));
+        clearance_m_ = lerp(kClearance_m, kLongFootClearance_m,
+                            clamp((lever_of(f_) - kLongLever) / (kLongFoot - kLongLever), 0, 1));
         // Long steps for the legs turn the pelvis more.
         yaw_ = clamp(radians(10) * x_ / f_.leg_m, radians(3), radians(10));
         side_ = support_side_ == Side::kLeft ? 1 : -1;
@@ -446,8 +461,8 @@ class Planner {
                 {height_at(whole_   ? 0.25
                            : first_ ? 0.38
                                     : 0.3,
-                           kClearance_m),
-                 height_at(0.5, kClearance_m), height_at(0.78, 0.8 * kClearance_m)},
+                           clearance_m_),
+                 height_at(0.5, clearance_m_), height_at(0.78, 0.8 * clearance_m_)},
                 {strike, {to.position.y, to.velocity.y, to.acceleration.y}}, pitch, toes, 0),
             minimum_jerk({lift, {from.position.z, from.velocity.z, from.acceleration.z}}, {},
                          {strike, {to.position.z, to.velocity.z, to.acceleration.z}})};
@@ -602,7 +617,8 @@ class Planner {
     Side support_side_;
     FootState swing_, support_;
     bool whole_ = false, first_ = false, last_ = false;
-    double n_ = 0, x_ = 0, half_ = 0, side_ = 1, floor_y_ = 0, swing_pitch_ = 0, yaw_ = 0;
+    double n_ = 0, x_ = 0, half_ = 0, side_ = 1, floor_y_ = 0, swing_pitch_ = 0, yaw_ = 0,
+           clearance_m_ = 0;
     Footprint support_print_;
     Transform path_from_world_;
     StepPlan plan_;
@@ -621,10 +637,15 @@ double Halt::past_end_s(double late_s) const {
 }
 
 double longest_stroke_m(const figure::Figure& figure, double duty_factor) {
-    return duty_factor < kRunsBelow
-               ? longest_run_stroke_m(figure, duty_factor)
-               : (kLongestStroke - kLessPerDuty * clamp(duty_factor - 0.62, 0, 0.28)) *
-                     figure.leg_m;
+    if (duty_factor < kRunsBelow) {
+        return longest_run_stroke_m(figure, duty_factor);
+    }
+    const double lever = lever_of(figure);
+    const double foot = std::fmax(kLongestStroke - kLessPerLever * (lever - kLongLever),
+                                  kLongerStroke - kLessPerLongerLever * (lever - kLongerLever));
+    const double most =
+        std::fmin(kLongestStroke, foot) - kLessPerDuty * clamp(duty_factor - 0.62, 0, 0.28);
+    return std::fmax(most, kShortestMost) * figure.leg_m;
 }
 
 double plan_duration_s(const MotionContext& context, const StepSpec& spec) {

@@ -188,7 +188,7 @@ void Preparer::tell_long_stroke(double stroke_m) {
              "a stroke of " + centimetres(stroke_m) +
                  " is longer than these legs reach: it is shortened to " + centimetres(most_m),
              "write a shorter stroke (a walk: at most 43 % of the height, less with a duty above "
-             "0.62), or let it run with a smaller duty"});
+             "0.62 and with long feet on short legs), or let it run with a smaller duty"});
     }
 }
 

@@ -116,8 +116,8 @@ TEST_CASE(
         return;
     }
     const Example& e = test::example(kRobot);
-    // Legs of 0.5 m with feet of 0.31 m: it rises less, and lifts its toes higher.
-    check_walk(e, {.rise_mm = 10, .knee_stance_deg = 27, .knee_swing_deg = 72});
+    // Legs of 0.5 m with feet of 0.31 m: strokes of 0.2 m rise less.
+    check_walk(e, {.rise_mm = 10, .knee_stance_deg = 27});
     // The feet that hang from the shins now go where the humanoid's go, and nothing of the skin is
     // in the floor.
     const figure::Character& c = *e.character(0);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "chain.h"
+#include "puppetri/figure/humanoid.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/turn.h"
 
@@ -467,6 +468,61 @@ TEST_CASE(
     }
     CHECK(sunk <= kTrials * 3 / 100);
     CHECK(slipped <= kTrials * 3 / 100);
+}
+
+TEST_CASE(
+    "feet half as long as the leg shorten what is too long a stroke, and walk it without a jerk "
+    "[law]") {
+    // A robot's: legs of 0.5 m, 0.15 m from the middle, ankles near the floor.
+    const auto robot = [](double ball_m) {
+        figure::HumanoidMeasures measures = figure::mannequin_measures(1.5);
+        measures.leg_m = 0.503;
+        measures.ankle_height_m = 0.015;
+        measures.hips_height_m = 0.52;
+        measures.stance_half_width_m = 0.15;
+        for (figure::HumanoidMeasures::Leg& leg : measures.legs) {
+            leg.hip.x = leg.hip.x > 0 ? 0.15 : -0.15;
+            leg.thigh_m = 0.2;
+            leg.shank_m = 0.303;
+            leg.heel_foot = {0, -0.015, -0.037};
+            leg.toes = {0, 0, ball_m};
+            leg.ball_foot = {0, -0.015, ball_m};
+            leg.toe_tip_foot = {0, -0.015, ball_m + 0.001};
+        }
+        return figure::make_humanoid(measures);
+    };
+    for (const double ball_m : {0.18, 0.21, 0.245, 0.272, 0.3}) {
+        const figure::Figure f = robot(ball_m);
+        const double most_m = longest_stroke_m(f, 0.62);
+        CHECK((most_m < 0.62 * f.leg_m) == (ball_m > 0.2));
+        if (ball_m < 0.2) {
+            continue;
+        }
+        for (const double n_s : {20.0 / 24, 1.0, 28.0 / 24}) {
+            for (const double stroke_m : {0.15, 0.2, 0.24, 0.3, 0.44, 0.8}) {
+                const Chain chain = walked(f, {.stroke_m = stroke_m, .n_s = n_s, .steps = 4});
+                const Measures m = chain.measured();
+                CAPTURE(ball_m);
+                CAPTURE(n_s);
+                CAPTURE(stroke_m);
+                INFO(report(m));
+                CHECK(m.slip_mm.value < 1);
+                CHECK(m.swing_sink_mm.value < 2);
+                CHECK(m.pelvis_acceleration.value <= 4.1);
+                CHECK(m.knee.speed_rad_s.value <= 10);
+                CHECK(m.hip.speed_rad_s.value <= 6.5);
+                CHECK(m.knee.acceleration_rad_s2.value <= 400);
+                CHECK(m.hip.acceleration_rad_s2.value <= 400);
+                CHECK(m.ankle.acceleration_rad_s2.value <= 400);
+                for (const Step& step : m.steps) {
+                    CHECK(step.knee_deg <= 70);
+                    CHECK(step.clearance_mm >= 10);
+                }
+            }
+        }
+    }
+    const figure::Figure man = figure::make_mannequin(1.75);
+    CHECK(longest_stroke_m(man, 0.62) == doctest::Approx(0.87 * man.leg_m));
 }
 
 TEST_CASE("absurd durations, strokes and duty factors give a movement too [hostile]") {

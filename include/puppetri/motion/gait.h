@@ -28,7 +28,8 @@ struct StepSpec {
 // The length of this movement: n or n/2. A duration that the net prescribes in the context replaces
 // it (n becomes the prescribed length, or twice it for a half step).
 double step_duration_s(const StepSpec& spec);
-// The longest stroke that this figure can walk or run; a longer one is shortened to it.
+// The longest stroke that this figure can walk or run; a longer one is shortened to it. A walk's is
+// shorter where feet are long for the legs: from ankle to ball beyond 0.35 of the leg.
 double longest_stroke_m(const figure::Figure& figure, double duty_factor);
 
 // A step. It goes where the feet point, along the line midway between them, and begins with the
