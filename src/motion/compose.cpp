@@ -40,6 +40,7 @@ class SideBySide final : public Movement {
         main_->sample(t_s, out);
         arms_->sample(t_s, out);
     }
+    Stride stride_at(double t_s) const override { return main_->stride_at(t_s); }
     void overlay(double t_s, LimbSet which, figure::Pose& pose) const override {
         main_->overlay(t_s, without(shared(which, main_->overlays), arms_->limbs), pose);
         arms_->overlay(t_s, shared(which, arms_->overlays), pose);
@@ -79,6 +80,12 @@ class InTurn final : public Movement {
         const std::size_t i = part_at(t_s);
         parts_[i]->sample(t_s - starts_s_[i], out);
     }
+    Stride stride_at(double t_s) const override {
+        const std::size_t i = part_at(t_s);
+        Stride stride = parts_[i]->stride_at(t_s - starts_s_[i]);
+        stride.end_s += starts_s_[i];
+        return stride;
+    }
     void overlay(double t_s, LimbSet which, figure::Pose& pose) const override {
         const std::size_t i = part_at(t_s);
         parts_[i]->overlay(t_s - starts_s_[i], shared(which, parts_[i]->overlays), pose);
@@ -94,6 +101,17 @@ class InTurn final : public Movement {
 };
 
 }  // namespace
+
+void advance_over(MotionContext& context, const Movement& movement) {
+    constexpr double kMoment_s = 1e-4;
+    const double end_s = movement.duration.seconds();
+    Controls earlier = context.now;
+    movement.sample(std::fmax(end_s - kMoment_s, 0), earlier);
+    movement.sample(end_s, context.now);
+    context.rate = rate_between(earlier, context.now, kMoment_s);
+    context.at = context.at + movement.duration;
+    context.onward = nullptr;
+}
 
 MovementPtr side_by_side(MovementPtr main, MovementPtr arms) {
     return std::make_shared<SideBySide>(std::move(main), std::move(arms));

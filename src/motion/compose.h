@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "puppetri/motion/context.h"
 #include "puppetri/motion/movement.h"
 
 namespace puppetri::motion {
@@ -14,5 +15,8 @@ MovementPtr side_by_side(MovementPtr main, MovementPtr arms);
 // Each begins when its predecessor's duration is over; the last goes on as a living rest. Needs at
 // least one.
 MovementPtr in_turn(std::vector<MovementPtr> parts);
+
+// Moves the context to the end of a movement that starts from it: the start of the next.
+void advance_over(MotionContext& context, const Movement& movement);
 
 }  // namespace puppetri::motion

@@ -74,6 +74,23 @@ class Step final : public Movement {
         copy_limbs(limbs, c, out);
     }
 
+    Stride stride_at(double t_s) const override {
+        const bool first = spec_.kind == StepKind::kFirstHalf,
+                   last = spec_.kind == StepKind::kLastHalf;
+        const double T = plan_.duration_s;
+        constexpr double kAsGoodAsOver_s = 0.002;
+        if (first ? t_s < plan_.lift_s : last && t_s > T - kAsGoodAsOver_s) {
+            return {};  // it stands
+        }
+        return {.under_way = true,
+                .end_s = std::fmax(T, t_s),
+                .closes = !last,
+                .transfer = other(spec_.transfer),
+                .stroke_m = spec_.stroke_m,
+                .step_s = spec_.kind == StepKind::kWhole ? T : 2 * T,
+                .duty_factor = spec_.duty_factor};
+    }
+
  private:
     Controls own_at(double t) const {
         const Quat heading = about_y(plan_.heading_rad);

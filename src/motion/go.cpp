@@ -23,17 +23,6 @@ constexpr int kRounds = 12;
 // Longer strokes, of the tall, take their time: in the usual one they would stop too sharply.
 constexpr double kQuickStroke_m = 0.6;
 
-// Moves the context to the end of a movement that starts from it: the start of the next.
-void advance_over(MotionContext& context, const Movement& movement) {
-    constexpr double kMoment_s = 1e-4;
-    const double end_s = movement.duration.seconds();
-    Controls earlier = context.now;
-    movement.sample(std::fmax(end_s - kMoment_s, 0), earlier);
-    movement.sample(end_s, context.now);
-    context.rate = rate_between(earlier, context.now, kMoment_s);
-    context.at = context.at + movement.duration;
-}
-
 Vec3 between_feet(const Controls& c) {
     const Vec3 middle = (c.legs[0].ankle_world + c.legs[1].ankle_world) * 0.5;
     return {middle.x, 0, middle.z};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compose.h"
+#include "finish_stride.h"
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/arguments.h"
 #include "puppetri/motion/arms.h"
@@ -67,7 +68,9 @@ class Preparer {
     void walk();
     void go();
     void turn_to(double heading_rad);
+    void turn();
     void face();
+    void stand_first();
     double in_time(double heading_rad) const;
     void ready();
     void throw_ball();
@@ -108,10 +111,12 @@ class Preparer {
     const BoundCall& call_;
     const MovementSignature& signature_;
     Arguments arguments_;
-    const MotionContext& context_;
+    MotionContext context_;
     const Surroundings& around_;
     Diagnostics& notes_;
-    MovementPtr arms_;  // what the arms are left to, or null
+    LimbSet limbs_;                    // of the main movement
+    MovementPtr arms_;                 // what the arms are left to, or null
+    std::vector<MovementPtr> before_;  // what the main movement waits for
     Prepared result_;
 };
 
@@ -158,6 +163,10 @@ LimbSet Preparer::main_limbs() {
 }
 
 void Preparer::finish(MovementPtr main) {
+    if (!before_.empty()) {
+        before_.push_back(std::move(main));
+        main = in_turn(std::move(before_));
+    }
     result_.movement = arms_ == nullptr ? std::move(main) : side_by_side(std::move(main), arms_);
 }
 
@@ -218,11 +227,10 @@ void Preparer::walk() {
 // To a place; before what stands or lies there by an arm's length; before a seat so far that
 // sitting down brings the hips onto it.
 void Preparer::go() {
-    tell_seated();
     const ArgumentValue* to = arguments_.find("to");
     PUP_REQUIRE(to != nullptr);
-    const LimbSet limbs = main_limbs();
-    GoSpec spec{.to_world = place_of(*to), .limbs = limbs};
+    stand_first();
+    GoSpec spec{.to_world = place_of(*to), .limbs = limbs_};
     const Vec3 way = spec.to_world - context_.now.pelvis.position_world;
     if (length(Vec3{way.x, 0, way.z}) > kFarthestWay_m) {
         note("far-way", "the place is more than 200 m away: it goes that far",
@@ -261,13 +269,32 @@ void Preparer::tell_seated() {
     }
 }
 
-void Preparer::turn_to(double heading_rad) {
+// The stride is finished before the turn: no leg could follow a body that turns away from it.
+void Preparer::stand_first() {
     tell_seated();
-    const LimbSet limbs = main_limbs();
+    limbs_ = main_limbs();
+    const double given_s = context_.duration.seconds();
+    before_ = finish_stride(context_, limbs_);
+    double gone_s = 0;
+    for (const MovementPtr& part : before_) {
+        gone_s += part->duration.seconds();
+    }
+    if (given_s > 0 && context_.duration.seconds() + gone_s > given_s + 1e-9) {
+        note("stride", "it is cut in its stride, which takes longer to finish than it is given",
+             "write takes auto, or let the walk end before");
+    }
+}
+
+void Preparer::turn() {
+    stand_first();
+    turn_to(heading_of(context_.now.pelvis.rotation_world) + arguments_.number("by"));
+}
+
+void Preparer::turn_to(double heading_rad) {
     const double by = turn_between(heading_of(context_.now.pelvis.rotation_world), heading_rad);
     finish(make_turn(context_, {.heading_rad = heading_rad,
                                 .duration_s = std::fmax(turn_duration_s(std::fabs(by)), 0.2),
-                                .limbs = limbs}));
+                                .limbs = limbs_}));
 }
 
 double Preparer::in_time(double heading_rad) const {
@@ -282,6 +309,7 @@ double Preparer::in_time(double heading_rad) const {
 void Preparer::face() {
     const ArgumentValue* toward = arguments_.find("toward");
     PUP_REQUIRE(toward != nullptr);
+    stand_first();
     if (const double* heading = std::get_if<double>(toward)) {
         turn_to(*heading);
     } else if (const auto* set = std::get_if<SetIndex>(toward)) {
@@ -666,7 +694,7 @@ Prepared Preparer::run() {
     } else if (name == "face") {
         face();
     } else if (name == "turn") {
-        turn_to(heading_of(context_.now.pelvis.rotation_world) + arguments_.number("by"));
+        turn();
     } else if (name == "ready") {
         ready();
     } else if (name == "throw") {

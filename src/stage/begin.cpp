@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What happens when a token arrives: a movement is prepared and put in charge of its limbs, or a
 // prop begins to fly.
+#include <algorithm>
+
 #include "puppetri/math/rotation.h"
 #include "puppetri/motion/ball_game.h"
 #include "puppetri/motion/handling.h"
@@ -17,14 +19,39 @@ constexpr double kFastFlight_m_s = 9, kFarFlight_m = 6;
 // adds.
 class Goes final : public motion::Movement {
  public:
-    Goes(const ActorTimeline& timeline, SimTime at) : start_(at) {
+    Goes(const ActorTimeline& timeline, SimTime at, bool before = false) : start_(at) {
         limbs = motion::kAllLimbs;
         for (int i = 0; i < motion::kLimbCount; ++i) {
             const Limb limb = static_cast<Limb>(i);
-            Charge charge = timeline.in_charge(limb, at);
+            Charge charge = timeline.in_charge(limb, at, before);
             charge.from = SimTime{-1};
             timeline_.take(motion::limb_set(limb), charge);
+            const SimTime age = at - charge.start;
+            for (motion::PhaseSpan span : charge.movement->phases) {
+                if (span.limb == limb && age < span.end) {
+                    span.begin = std::max(span.begin - age, SimTime{0});
+                    span.end = span.end - age;
+                    phases.push_back(span);
+                }
+            }
+            for (motion::MovementEvent event : charge.movement->events) {
+                if (event.limb == limb && age < event.after_start) {
+                    event.after_start = event.after_start - age;
+                    events.push_back(event);
+                }
+            }
         }
+        std::stable_sort(events.begin(), events.end(),
+                         [](const motion::MovementEvent& a, const motion::MovementEvent& b) {
+                             return a.after_start < b.after_start;
+                         });
+    }
+    motion::Stride stride_at(double t_s) const override {
+        const Charge& hips = timeline_.in_charge(Limb::kPelvis, start_);
+        const double age_s = (start_ - hips.start).seconds();
+        motion::Stride stride = hips.movement->stride_at(age_s + t_s);
+        stride.end_s -= age_s;
+        return stride;
     }
     void sample(double t_s, Controls& out) const override {
         timeline_.sample(start_ + SimTime{static_cast<std::int64_t>(t_s * kTicksPerSecond)}, out);
@@ -43,7 +70,12 @@ SimTime Stage::Data::begin_actor(std::uint32_t number, const motion::BoundCall& 
     activity.actor = call.subject.actor;
     PUP_REQUIRE(activity.actor.value < take.actors.size());
     attend(activity.actor, call);
-    const MotionContext context = context_of(activity.actor, now, duration);
+    MotionContext context = context_of(activity.actor, now, duration);
+    const ActorTimeline& timeline = take.actors[activity.actor.value].timeline;
+    const Charge& hips = timeline.in_charge(Limb::kPelvis, now, true);
+    if (hips.movement->stride_at((now - hips.start).seconds()).under_way) {
+        context.onward = std::make_shared<Goes>(timeline, now, true);
+    }
     const Seen seen = look_around(now, activity.actor);
     const motion::Surroundings around{seen.actors, seen.props, seen.sets, activity.actor,
                                       held_by(activity.actor, now)};

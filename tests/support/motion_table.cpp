@@ -19,12 +19,6 @@ constexpr Allowed kAllowed[] = {
     {"16_units/class.pup", "", "pelvis m/s2", 20},
     {"16_units/class.pup", "", "ankle rad/s", 14},
     {"16_units/class.pup", "", "knee rad/s2", 1200},
-    // Whom a noise stops in full stride.
-    {"18_chart/guard.pup", "rui", "pelvis m/s2", 20},
-    {"18_chart/watch.pup", "rui", "pelvis m/s2", 20},
-    {"18_chart/guard.pup", "rui", "knee rad/s2", 1200},
-    {"18_chart/guard.pup", "rui", "hip rad/s2", 600},
-    {"18_chart/guard.pup", "rui", "ankle rad/s2", 600},
     // Keyframes of a file as they are.
     {"09_philosophers/absolute.pup", "man1", "arm rad/s2", 1700},
 };

@@ -8,6 +8,7 @@
 #include "puppetri/base/time.h"
 #include "puppetri/figure/mannequin.h"
 #include "puppetri/motion/controls.h"
+#include "puppetri/motion/movement.h"
 
 namespace puppetri::motion {
 
@@ -42,6 +43,8 @@ struct MotionContext {
     SimTime at;              // absolute start of the movement
     SimTime duration{-1};    // what the net prescribes; negative: the movement decides
     std::uint64_t seed = 0;  // of the actor and movement: variation without randomness at run time
+    // How the figure would go on from here, where it is cut in a stride (movement.h); else null.
+    MovementPtr onward = {};
 };
 
 // Writes the limbs in `limbs` of `from` into `to`.

@@ -32,6 +32,16 @@ struct MovementEvent {
     Limb limb = Limb::kPelvis;
 };
 
+// The end of a stride: what a figure on its way still does before it can stand.
+struct Stride {
+    bool under_way = false;  // otherwise nothing is left to do, and nothing else here counts
+    double end_s = 0;        // after the movement's start: when both feet are on the floor
+    // Then they are one before the other, and a last half step brings this one beside the other.
+    bool closes = false;
+    Side transfer = Side::kRight;
+    double stroke_m = 0, step_s = 0, duty_factor = 0;
+};
+
 class Movement {
  public:
     virtual ~Movement() = default;
@@ -54,11 +64,16 @@ class Movement {
     // into (of a figure without controls: the rest pose), so that what the movement does to a joint
     // goes on top of whatever else is done to the controls. Cost: no allocation.
     virtual void overlay(double t_s, LimbSet which, figure::Pose& pose) const;
+
+    // The stride in which a movement that is cut at t_s leaves the figure; none of movements that
+    // stand.
+    virtual Stride stride_at(double t_s) const;
 };
 
 // Stateful values never change after preparing, so that sharing is safe.
 using MovementPtr = std::shared_ptr<const Movement>;
 
 inline void Movement::overlay(double, LimbSet, figure::Pose&) const {}
+inline Stride Movement::stride_at(double) const { return {}; }
 
 }  // namespace puppetri::motion
