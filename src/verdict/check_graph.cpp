@@ -366,23 +366,22 @@ class Checker {
         Product p = product(nullptr);
         Nodes dead(p.size(), 0), silent(p.size(), 0);
         const Nodes quiet = graph_.over ? quiet_for_ever(p) : Nodes(p.size(), 0);
-        bool polls = false;
         for (std::uint32_t n = 0; n < p.size(); ++n) {
             dead[n] = p.rests(n) && !p.final_marking(n) && !p.stops(n) ? 1 : 0;
             silent[n] = quiet[n] != 0 && !p.final_marking(n) ? 1 : 0;
-            polls = polls || (silent[n] != 0 && dead[n] == 0);
-            dead[n] = dead[n] != 0 || silent[n] != 0 ? 1 : 0;
         }
-        if (polls) {
-            Finding f = suspect(std::move(p), std::move(dead), Target::kHopeless,
-                                "it may come to where nothing ever fires again, though events go "
-                                "on, and no end is declared");
-            f.certain = std::move(silent);
-            return f;
-        }
+        // Where there is a dead marking, it is the plainer thing to show.
         if (any(dead)) {
             return suspect(std::move(p), std::move(dead), Target::kRest,
                            "everything may come to rest where no end is declared");
+        }
+        if (any(silent)) {
+            Nodes certain = silent;
+            Finding f = suspect(std::move(p), std::move(silent), Target::kHopeless,
+                                "it may come to where nothing ever fires again, though events go "
+                                "on, and no end is declared");
+            f.certain = std::move(certain);
+            return f;
         }
         return covers(p) ? holds() : cut_short();
     }
