@@ -16,7 +16,7 @@ target_sources(test_io PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/tests/support/measur
 file(GLOB net_format_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/base/*.cpp"
     "${CMAKE_CURRENT_SOURCE_DIR}/src/net/*.cpp" "${CMAKE_CURRENT_SOURCE_DIR}/src/lang/*.cpp")
 foreach(unit net_file xml_text pnml_document pnml pipe tina tina_lexer tina_priorities test_arcs symmetric_sorts
-        symmetric_terms symmetric_unfold contest_queries net_features loops write_net pnml_writer pipe_writer tina_writer
+        symmetric_terms symmetric_unfold contest_queries net_features loops write_net xml_escaped pnml_writer pipe_writer tina_writer
         lola_writer graphviz_writer scene_writer)
     list(APPEND net_format_sources "${CMAKE_CURRENT_SOURCE_DIR}/src/io/${unit}.cpp")
 endforeach()
