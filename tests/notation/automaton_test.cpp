@@ -50,14 +50,8 @@ automaton m {
   b -> b
 }
 )");
-    std::vector<std::pair<std::uint32_t, std::string>> got;
-    for (const Diagnostic& d : list) {
-        got.emplace_back(d.where.line, d.code);
-        CHECK_FALSE(d.remedy.empty());
-        CHECK(d.element == "automaton m");
-    }
-    CHECK(got == std::vector<std::pair<std::uint32_t, std::string>>{
-                     {5, "never-entered"}, {6, "syntax"}, {7, "unknown-name"}});
+    CHECK(lines_and_codes(list, "automaton m") ==
+          LinesAndCodes{{5, "never-entered"}, {6, "syntax"}, {7, "unknown-name"}});
 }
 
 TEST_CASE("states that lead to each other alone are never entered [unit]") {

@@ -259,19 +259,14 @@ cells c {
   off -> on when cell(99) = on
 }
 )");
-    std::vector<std::pair<std::uint32_t, std::string>> got;
-    for (const Diagnostic& d : list) {
-        got.emplace_back(d.where.line, d.code);
-        CHECK_FALSE(d.remedy.empty());
-    }
-    CHECK(got == std::vector<std::pair<std::uint32_t, std::string>>{{8, "syntax"},
-                                                                    {9, "never-entered"},
-                                                                    {10, "cell-expected"},
-                                                                    {11, "unknown-name"},
-                                                                    {12, "cell-expected"},
-                                                                    {13, "out-of-range"},
-                                                                    {14, "unknown-name"},
-                                                                    {15, "cell-expected"}});
+    CHECK(lines_and_codes(list) == LinesAndCodes{{8, "syntax"},
+                                                 {9, "never-entered"},
+                                                 {10, "cell-expected"},
+                                                 {11, "unknown-name"},
+                                                 {12, "cell-expected"},
+                                                 {13, "out-of-range"},
+                                                 {14, "unknown-name"},
+                                                 {15, "cell-expected"}});
     CHECK_FALSE(defects_of("use c as l\ncells c {\n every 1 s\n a\n b\n a -> b\n}\n").empty());
     CHECK_FALSE(defects_of("use c as l\ncells c {\n ring 3\n a\n b\n a -> b\n}\n").empty());
     CHECK_FALSE(

@@ -275,22 +275,15 @@ event_graph g {
   a -> b cancels after 2 s
 }
 )");
-    std::vector<std::pair<std::uint32_t, std::string>> got;
-    for (const Diagnostic& d : list) {
-        got.emplace_back(d.where.line, d.code);
-        CHECK_FALSE(d.remedy.empty());
-        CHECK(d.element == "event_graph g");
-    }
-    std::sort(got.begin(), got.end());
-    CHECK(got == std::vector<std::pair<std::uint32_t, std::string>>{{4, "start-state"},
-                                                                    {5, "never-entered"},
-                                                                    {5, "out-of-range"},
-                                                                    {6, "never-entered"},
-                                                                    {7, "never-entered"},
-                                                                    {8, "wrong-arguments"},
-                                                                    {9, "unknown-name"},
-                                                                    {10, "wrong-arguments"},
-                                                                    {11, "syntax"}});
+    CHECK(lines_and_codes(list, "event_graph g") == LinesAndCodes{{4, "start-state"},
+                                                                  {5, "never-entered"},
+                                                                  {5, "out-of-range"},
+                                                                  {6, "never-entered"},
+                                                                  {7, "never-entered"},
+                                                                  {8, "wrong-arguments"},
+                                                                  {9, "unknown-name"},
+                                                                  {10, "wrong-arguments"},
+                                                                  {11, "syntax"}});
 }
 
 }  // namespace

@@ -81,39 +81,35 @@ net walk {
     CHECK(log_of(text, 300) == log_of(net, 300));
 }
 
-std::vector<std::pair<std::uint32_t, std::string>> codes(const std::string& lines) {
-    std::vector<std::pair<std::uint32_t, std::string>> got;
-    for (const Diagnostic& d : defects_of("use c as x\nmarkov c(p = 0.5) {\n" + lines + "}\n")) {
-        got.emplace_back(d.where.line, d.code);
-        CHECK_FALSE(d.remedy.empty());
-        CHECK(d.element == "markov c");
-    }
-    return got;
+LinesAndCodes codes(const std::string& lines) {
+    return lines_and_codes(defects_of("use c as x\nmarkov c(p = 0.5) {\n" + lines + "}\n"),
+                           "markov c");
 }
-using Codes = std::vector<std::pair<std::uint32_t, std::string>>;
 
 TEST_CASE("a chain that does not sum to one is told where it stands [unit]") {
     const std::string head = " every 1 s\n a starts\n b\n b -> b 1\n";  // lines 5 to 8
-    CHECK(codes(head + " a -> b 0.3\n a -> a 0.7\n") == Codes{});
-    CHECK(codes(head + " a -> b 0.3\n a -> a 0.6\n") == Codes{{6, "sum-not-one"}});
-    CHECK(codes(head + " a -> b 0.3\n a -> a 0.70001\n") == Codes{{6, "sum-not-one"}});
-    CHECK(codes(head + " a -> b 1/3\n a -> a 2/3\n") == Codes{});
-    CHECK(codes(head + " a -> b 1.2\n a -> a -0.2\n") != Codes{});
-    CHECK(codes(head + " a -> b 1\n a -> a else\n") == Codes{{10, "sum-not-one"}});
-    CHECK(codes(head + " a -> b p\n a -> a 0.5\n") == Codes{{6, "sum-not-one"}});
-    CHECK(codes(head + " a -> b p\n a -> a else\n") == Codes{});
+    CHECK(codes(head + " a -> b 0.3\n a -> a 0.7\n") == LinesAndCodes{});
+    CHECK(codes(head + " a -> b 0.3\n a -> a 0.6\n") == LinesAndCodes{{6, "sum-not-one"}});
+    CHECK(codes(head + " a -> b 0.3\n a -> a 0.70001\n") == LinesAndCodes{{6, "sum-not-one"}});
+    CHECK(codes(head + " a -> b 1/3\n a -> a 2/3\n") == LinesAndCodes{});
+    CHECK(codes(head + " a -> b 1.2\n a -> a -0.2\n") != LinesAndCodes{});
+    CHECK(codes(head + " a -> b 1\n a -> a else\n") == LinesAndCodes{{10, "sum-not-one"}});
+    CHECK(codes(head + " a -> b p\n a -> a 0.5\n") == LinesAndCodes{{6, "sum-not-one"}});
+    CHECK(codes(head + " a -> b p\n a -> a else\n") == LinesAndCodes{});
     CHECK(codes(" every 1 s\n a starts with 0.5\n b starts with 0.4\n a -> b 1\n b -> a 1\n") ==
-          Codes{{7, "sum-not-one"}});
+          LinesAndCodes{{7, "sum-not-one"}});
 }
 
 TEST_CASE("other defects of chains are told where they stand [unit]") {
-    CHECK(codes(" a starts\n a -> c mean 1 s\n") == Codes{{5, "sum-not-one"}, {6, "unknown-name"}});
-    CHECK(codes(" a\n b\n a -> b mean 1 s\n b -> a mean 1 s\n") == Codes{{4, "start-state"}});
+    CHECK(codes(" a starts\n a -> c mean 1 s\n") ==
+          LinesAndCodes{{5, "sum-not-one"}, {6, "unknown-name"}});
+    CHECK(codes(" a\n b\n a -> b mean 1 s\n b -> a mean 1 s\n") ==
+          LinesAndCodes{{4, "start-state"}});
     CHECK(codes(" a starts\n b\n a -> b mean 1 s\n b -> a mean 1 s\n a -> b mean 2 s\n") ==
-          Codes{{9, "name-twice"}});
-    CHECK(codes(" a starts final\n a -> a mean 1 s\n") == Codes{{5, "final-is-left"}});
+          LinesAndCodes{{9, "name-twice"}});
+    CHECK(codes(" a starts final\n a -> a mean 1 s\n") == LinesAndCodes{{5, "final-is-left"}});
     CHECK(codes(" a starts final\n b\n c\n b -> c mean 1 s\n c -> b mean 1 s\n") ==
-          Codes{{6, "never-entered"}, {7, "never-entered"}});
+          LinesAndCodes{{6, "never-entered"}, {7, "never-entered"}});
 }
 
 }  // namespace

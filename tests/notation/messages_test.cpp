@@ -268,21 +268,15 @@ messages w {
   a sends hello to b one day
 }
 )");
-    std::vector<std::pair<std::uint32_t, std::string>> got;
-    for (const Diagnostic& d : list) {
-        got.emplace_back(d.where.line, d.code);
-        CHECK_FALSE(d.remedy.empty());
-    }
-    std::sort(got.begin(), got.end());
-    CHECK(got == std::vector<std::pair<std::uint32_t, std::string>>{{10, "name-twice"},
-                                                                    {11, "link-to-itself"},
-                                                                    {12, "unknown-name"},
-                                                                    {13, "no-way"},
-                                                                    {14, "unknown-name"},
-                                                                    {15, "syntax"},
-                                                                    {17, "name-twice"},
-                                                                    {18, "syntax"},
-                                                                    {19, "syntax"}});
+    CHECK(lines_and_codes(list) == LinesAndCodes{{10, "name-twice"},
+                                                 {11, "link-to-itself"},
+                                                 {12, "unknown-name"},
+                                                 {13, "no-way"},
+                                                 {14, "unknown-name"},
+                                                 {15, "syntax"},
+                                                 {17, "name-twice"},
+                                                 {18, "syntax"},
+                                                 {19, "syntax"}});
 }
 
 }  // namespace

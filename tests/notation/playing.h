@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Scenes of notations, loaded and played, and their logs as text: "20 s l.green_to_yellow".
 #pragma once
+#include <algorithm>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "doctest/doctest.h"
@@ -34,6 +36,20 @@ inline Diagnostics defects_of(const std::string& body) {
     scene::MemoryFiles files;
     files.add("scene.pup", "language 1\nscene \"test\"\n" + body);
     return scene::check(files, "scene.pup");
+}
+
+// What is told and in which line, sorted. Each defect names a remedy, and `element` where one is
+// given.
+using LinesAndCodes = std::vector<std::pair<std::uint32_t, std::string>>;
+inline LinesAndCodes lines_and_codes(const Diagnostics& list, const std::string& element = "") {
+    LinesAndCodes out;
+    for (const Diagnostic& d : list) {
+        out.emplace_back(d.where.line, d.code);
+        CHECK_FALSE(d.remedy.empty());
+        CHECK((element.empty() || d.element == element));
+    }
+    std::sort(out.begin(), out.end());
+    return out;
 }
 
 // Every firing up to `seconds`; a fault ends the list.

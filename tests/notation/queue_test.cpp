@@ -407,15 +407,8 @@ queue shop(p = 0.5, q = 0.5) {
   lonely -> out
 }
 )");
-    std::vector<std::pair<std::uint32_t, std::string>> got;
-    for (const Diagnostic& d : list) {
-        got.emplace_back(d.where.line, d.code);
-        CHECK_FALSE(d.remedy.empty());
-        CHECK(d.element == "queue shop");
-    }
-    std::sort(got.begin(), got.end());
     // What cannot be read is told first.
-    CHECK(got == std::vector<std::pair<std::uint32_t, std::string>>{{17, "unknown-name"}});
+    CHECK(lines_and_codes(list, "queue shop") == LinesAndCodes{{17, "unknown-name"}});
 }
 
 TEST_CASE("defects of a queue's sense are told all at once [unit]") {
@@ -437,21 +430,15 @@ queue shop(p = 0.5, q = 0.5) {
   lonely -> out
 }
 )");
-    std::vector<std::pair<std::uint32_t, std::string>> got;
-    for (const Diagnostic& d : list) {
-        got.emplace_back(d.where.line, d.code);
-        CHECK_FALSE(d.remedy.empty());
-    }
-    std::sort(got.begin(), got.end());
-    CHECK(got == std::vector<std::pair<std::uint32_t, std::string>>{{5, "name-twice"},
-                                                                    {7, "not-together"},
-                                                                    {8, "not-together"},
-                                                                    {9, "never-entered"},
-                                                                    {10, "wrong-routing"},
-                                                                    {13, "not-together"},
-                                                                    {14, "wrong-routing"},
-                                                                    {16, "wrong-routing"},
-                                                                    {17, "wrong-routing"}});
+    CHECK(lines_and_codes(list) == LinesAndCodes{{5, "name-twice"},
+                                                 {7, "not-together"},
+                                                 {8, "not-together"},
+                                                 {9, "never-entered"},
+                                                 {10, "wrong-routing"},
+                                                 {13, "not-together"},
+                                                 {14, "wrong-routing"},
+                                                 {16, "wrong-routing"},
+                                                 {17, "wrong-routing"}});
 }
 
 TEST_CASE("probabilities that sum to one whatever the parameters are [unit]") {

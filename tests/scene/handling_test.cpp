@@ -43,6 +43,15 @@ Vec3 palm(const stage::Performance& p, std::uint32_t who, int side, double t_s) 
     return (world[figure.arms[i].hand.value] * figure.arms[i].hand_from_palm).translation;
 }
 
+// When an event of that name last was; 0 if never.
+double last(const stage::Performance& shown, std::string_view name) {
+    double at_s = 0;
+    for (const stage::StageEvent& e : shown.events()) {
+        at_s = e.name == name ? e.at.seconds() : at_s;
+    }
+    return at_s;
+}
+
 }  // namespace
 
 TEST_CASE("a ball is picked up off the floor, handed over, and carried on, without a jump [law]") {
@@ -54,11 +63,7 @@ TEST_CASE("a ball is picked up off the floor, handed over, and carried on, witho
     check_good(measured(p, scene, 0), "ana");
     check_good(measured(p, scene, 1), "rui");
     const stage::Performance& shown = *p.performance;
-    double grasp = 0, given = 0;
-    for (const stage::StageEvent& e : shown.events()) {
-        grasp = e.name == "grasp" ? e.at.seconds() : grasp;
-        given = e.name == "hand_over" ? e.at.seconds() : given;
-    }
+    const double grasp = last(shown, "grasp"), given = last(shown, "hand_over");
     REQUIRE(grasp > 0.5);
     REQUIRE(given > grasp);
     CHECK(shown.holder({0}, at(grasp - 0.01)) == "floor");
@@ -126,11 +131,7 @@ TEST_CASE("boxes are picked up, carried and handed over between flat palms [law]
         check_good(measured(p, scene, 0), "ana");
         check_good(measured(p, scene, 1), "rui");
         const stage::Performance& shown = *p.performance;
-        double grasp = 0, given = 0;
-        for (const stage::StageEvent& e : shown.events()) {
-            grasp = e.name == "grasp" ? e.at.seconds() : grasp;
-            given = e.name == "hand_over" ? e.at.seconds() : given;
-        }
+        const double grasp = last(shown, "grasp"), given = last(shown, "hand_over");
         CHECK(shown.holder({0}, at(given + 0.01)) == "rui.hands");
         Transform before = shown.world_from_prop({0}, at(0));
         for (double t = 0; t < 8.5; t += 1.0 / 120) {
