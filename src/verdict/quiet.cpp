@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "puppetri/net/tables.h"
 
@@ -36,10 +37,17 @@ class Before {
             }
         }
     }
-    template <class Visit>
-    void each(std::uint32_t node, Visit&& visit) const {
-        for (std::uint64_t i = starts_[node]; i < starts_[node + std::size_t{1}]; ++i) {
-            visit(sources_[i]);
+    // From the open nodes back along all edges: a node that `joins` is open as well.
+    template <class Joins>
+    void spread(std::vector<std::uint32_t> open, Joins&& joins) const {
+        while (!open.empty()) {
+            const std::uint32_t node = open.back();
+            open.pop_back();
+            for (std::uint64_t i = starts_[node]; i < starts_[node + std::size_t{1}]; ++i) {
+                if (joins(sources_[i])) {
+                    open.push_back(sources_[i]);
+                }
+            }
         }
     }
 
@@ -63,17 +71,9 @@ Nodes quiet_for_ever(const Product& p, const Idle& idle) {
             open.push_back(n);
         }
     }
-    const Before before(p, idle);
-    while (!open.empty()) {
-        const std::uint32_t n = open.back();
-        open.pop_back();
-        before.each(n, [&](std::uint32_t source) {
-            if (quiet[source] != 0) {
-                quiet[source] = 0;
-                open.push_back(source);
-            }
-        });
-    }
+    Before(p, idle).spread(std::move(open), [&](std::uint32_t source) {
+        return std::exchange(quiet[source], std::uint8_t{0}) != 0;
+    });
     return quiet;
 }
 
@@ -90,17 +90,10 @@ Nodes quiet_perhaps(const Product& p, const Idle& idle, const proof::Waits* wait
             open.push_back(n);
         }
     }
-    const Before before(p, idle);
-    while (!open.empty()) {
-        const std::uint32_t n = open.back();
-        open.pop_back();
-        before.each(n, [&](std::uint32_t source) {
-            if (--ways[source] == 0 && quiet[source] != 0 && !p.rests(source) && !p.cut(source)) {
-                quiet[source] = 0;
-                open.push_back(source);
-            }
-        });
-    }
+    Before(p, idle).spread(std::move(open), [&](std::uint32_t source) {
+        return --ways[source] == 0 && !p.rests(source) && !p.cut(source) &&
+               std::exchange(quiet[source], std::uint8_t{0}) != 0;
+    });
     // Where no run goes round among them, it has to come to rest.
     std::vector<std::uint8_t> firings(p.targets.size(), 0);
     for (std::uint64_t e = 0; e < p.targets.size(); ++e) {
